@@ -13,6 +13,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
 
+from omegadot.adapters.node.packages import ENGINES as NODE_ENGINES
+from omegadot.adapters.node.packages import missing
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.reference_impl.system import System
 
@@ -28,8 +30,13 @@ BUILT_IN: dict[str, str] = {
     "pinocchio": "omegadot.adapters.pinocchio.adapter:PinocchioAdapter",
     "dart": "omegadot.adapters.dart.adapter:DartAdapter",
 }
-OPTIONAL: dict[str, str] = {"drake": "omegadot.adapters.drake.adapter:DrakeAdapter"}
+EXTRAS: dict[str, str] = {"drake": "omegadot.adapters.drake.adapter:DrakeAdapter"}
 """Engines that an extra of the same name installs: ``pip install 'omegadot[drake]'``."""
+NODE: dict[str, str] = {
+    name: f"omegadot.adapters.node.adapter:{name.replace('-', '_')}" for name in NODE_ENGINES
+}
+"""Engines that run through Node: ``omegadot engines --install node``."""
+OPTIONAL = {**EXTRAS, **NODE}
 OURS = {**BUILT_IN, **OPTIONAL}
 _MODULES = {"drake": "pydrake"}  # of an optional engine's package, by which it is known to be there
 
@@ -48,7 +55,9 @@ def registered() -> dict[str, str]:
 
 def is_absent(name: str) -> bool:
     """Whether this is an optional engine whose package is not installed."""
-    return name in OPTIONAL and importlib.util.find_spec(_MODULES[name]) is None
+    if name in NODE:
+        return bool(missing(name))
+    return name in EXTRAS and importlib.util.find_spec(_MODULES[name]) is None
 
 
 def _import_target(module_name: str) -> ModuleType:
@@ -109,11 +118,12 @@ def name_in_command(command: str) -> str:
     return found[1] if found else ""
 
 
-def factory_of(target: str) -> Callable[..., Adapter] | str:
+def factory_of(target: str) -> Callable[..., Adapter | str] | str:
     """The class that ``module:Class`` or ``FILE.py:Class`` names, or a program's command line.
 
-    The latter is given by ``command:PROGRAM ...``, or by a text in the place of the class. Raises
-    AdapterError where there is neither, and whatever importing the module raises.
+    The latter is given by ``command:PROGRAM ...``, or by a text in the place of the class, or by
+    what a function there returns. Raises AdapterError where there is none, and whatever importing
+    the module raises.
     """
     if target.startswith(PROGRAM):
         return target.removeprefix(PROGRAM)
@@ -121,7 +131,7 @@ def factory_of(target: str) -> Callable[..., Adapter] | str:
     if not separator or not class_name:
         raise AdapterError(f"{target}: not an adapter; give module:Class or FILE.py:Class.")
     module = _import_target(module_name)
-    factory: Callable[..., Adapter] | str | None = getattr(module, class_name, None)
+    factory: Callable[..., Adapter | str] | str | None = getattr(module, class_name, None)
     if not (callable(factory) or isinstance(factory, str)):
         raise AdapterError(f"{target}: {module_name} has no class {class_name}; check its name.")
     return factory
@@ -141,15 +151,21 @@ def build_adapter(
     whatever the engine's import raises (ImportError when it is not installed).
     """
     factory = factory_of(target)
-    if not isinstance(factory, str):
-        try:
-            adapter = factory(setup=setup)
-        except ModuleNotFoundError as error:
-            extra = next((name for name, own in OPTIONAL.items() if own == target), "")
-            advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
-            raise ImportError(f"{error}{advice}") from error
+    made = factory if isinstance(factory, str) else _made(factory, target, setup)
+    if not isinstance(made, str):
+        adapter = made
     elif served is None:
         raise AdapterError(f"{target}: a program serves engines in a process of its own only.")
     else:
-        adapter = served(factory, setup)
+        adapter = served(made, setup)
     return through_file(adapter, via) if via else adapter
+
+
+def _made(factory: Callable[..., Adapter | str], target: str, setup: Setup) -> Adapter | str:
+    """What a class or a function makes; where a module is missing, with what installs it."""
+    try:
+        return factory(setup=setup)
+    except ModuleNotFoundError as error:
+        extra = next((name for name, own in EXTRAS.items() if own == target), "")
+        advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
+        raise ImportError(f"{error}{advice}") from error

@@ -92,6 +92,15 @@ def test_only_failures_are_excused() -> None:
     assert with_exceptions(Check("mujoco", "sphere", "model"), PASSED, known) == PASSED
 
 
+def test_a_pattern_may_be_about_every_system_that_is_drawn(tmp_path: Path) -> None:
+    """None is drawn here, and the pattern matches what may be; one of a single system does not."""
+    drawn = f"{NAME}-semi-implicit-euler-random-*"
+    result = checked(f"{ALL}{declaration(drawn).partition(chr(10))[2]}", tmp_path)
+    assert result.code == 0, result.out
+    result = checked(declaration(f"{NAME}-*-quick-*", f"{NAME}-random-7-7-model"), tmp_path)
+    assert "'nogyroscopic-random-7-7-model' matches no check" in result.out
+
+
 def test_they_stand_next_to_an_adapter(tmp_path: Path) -> None:
     (tmp_path / "mine.exceptions.toml").write_text(declaration("mine-*", engine="mine"))
     target = f"{tmp_path / 'mine.py'}:MineAdapter"

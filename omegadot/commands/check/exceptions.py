@@ -24,6 +24,7 @@ from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioError, builtin_names, load_builtin
 from omegadot.scenarios.files import read_toml
+from omegadot.scenarios.random_systems import random_scenario
 
 OWN_FOLDER = Path(__file__).with_name("known")
 SUFFIX = ".exceptions.toml"
@@ -146,8 +147,10 @@ def unmatched(
     own = [exception for exception in exceptions if exception.engine == subject.name]
     if not own:
         return []
-    # All that there may be: its integrators, on these scenarios and on all built-in ones.
+    # All that there may be: its integrators, on these scenarios, on all built-in ones, and on one
+    # that stands for those that are drawn: a run draws none, and a pattern may be about them all.
     scenarios = [case.scenario for case in cases] + [load_builtin(n) for n in builtin_names()]
+    scenarios.append(random_scenario(0, 0))
     whole = [*cases, *(case_of(scenario, ()) for scenario in scenarios)]
     known = [*checks_of([subject.whole], whole), *baseline_checks(subject.whole, whole, stored)]
     return [e for e in own if not any(e.matches(check) for check in known)]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from omegadot.commands.options import Adapters, PageFormat, PageOutput
+from omegadot.commands.options import Adapters, PageFormat, PageOutput, Text, option
 
 if TYPE_CHECKING:
     from omegadot.adapters.protocol import Integrator
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 def engines(
     output: PageOutput = PageFormat.text,
     adapters: Adapters = None,
+    install: Annotated[
+        Text, option("node", "Install the engines that run through Node, with npm, then list all.")
+    ] = None,
 ) -> None:
     """List the engines: installed or not, versions, integrators, conventions, what is off.
 
@@ -24,7 +27,7 @@ def engines(
     """
     from omegadot.commands.engines.engines import engines as installed_engines
 
-    entries = installed_engines(adapters or ())
+    entries = installed_engines(adapters or (), install)
     if output is PageFormat.json:
         print_json(entries)
     elif output is PageFormat.markdown:

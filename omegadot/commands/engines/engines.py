@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from omegadot.adapters.protocol import Description
 from omegadot.adapters.registry import OPTIONAL, is_absent
+from omegadot.commands.engines.install import install as install_group
 from omegadot.commands.typed import typed
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
@@ -35,12 +36,17 @@ class EngineEntry:
 
 
 @typed
-def engines(adapters: EngineLike | Sequence[EngineLike] = ()) -> tuple[EngineEntry, ...]:
+def engines(
+    adapters: EngineLike | Sequence[EngineLike] = (), install: str | None = None
+) -> tuple[EngineEntry, ...]:
     """Every engine that is registered, each started in a process of its own.
 
     Optional ones that are not installed are among them, with what installs them.
-    adapters: engines of your own in addition, by class. Raises UsageError.
+    adapters: engines of your own in addition, by class.  install: engines that are installed
+    first; "node" stands for those that run through Node. Raises UsageError.
     """
+    if install is not None:
+        install_group(install)
     choices = engine_choices([], several(adapters))
     choices += [EngineChoice(name, OPTIONAL[name]) for name in OPTIONAL if is_absent(name)]
     with ThreadPoolExecutor() as threads:

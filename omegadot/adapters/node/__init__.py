@@ -1,0 +1,1 @@
+"""Engines that run in JavaScript, through Node: one worker for all, one small file for each."""

@@ -1,0 +1,287 @@
+"""The engines that run through Node: what they step, and what crosses their border.
+
+They keep three kinds of numbers that the project has not: omega in world axes, principal moments,
+and single precision. What a step does is written out here, by the engine's own formula.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from mujoco_cases import GRAVITY, at, norm, parts, states, system
+
+from omegadot.adapters.node.packages import ENGINES, command_of, missing
+from omegadot.adapters.protocol import UnsupportedError
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.rotations import attitude_angle, quaternion_product, rotate
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+from omegadot.workers.engine_end.command import CommandAdapter
+from omegadot.workers.engine_end.described import description_of
+
+STEP, STEPS = 0.01, 20
+EPS = {"cannon-es": float(np.finfo(float).eps)}
+SINGLE = float(np.finfo(np.float32).eps)
+FEW = 64  # roundings in a row of about twenty operations on three components
+SUBSTEPS = {"jolt-physics": 1, "rapier3d-compat": 4}
+TURNED = State(np.array([1.0, 0, 0, 0]), np.array([0.4, 2.0, -0.7]), np.zeros(3), np.zeros(3))
+
+
+def built(name: str, setup: Any = "physics") -> CommandAdapter:
+    if reason := missing(name):
+        pytest.skip(reason)
+    return started(name, setup)
+
+
+@cache
+def started(name: str, setup: Any) -> CommandAdapter:
+    """One program serves every test, so that a test sees what an earlier load left behind."""
+    return CommandAdapter(command_of(name), setup)
+
+
+@pytest.fixture(scope="module", params=sorted(ENGINES))
+def engine(request: pytest.FixtureRequest) -> CommandAdapter:
+    return built(request.param)
+
+
+def eps_of(adapter: CommandAdapter) -> float:
+    return EPS.get(adapter.description.name, SINGLE)
+
+
+def taken(adapter: CommandAdapter, load: str = "none") -> System:
+    """The fullest system that an engine takes."""
+    full = "full_inertia" in adapter.description.features
+    found = system("full" if full else "diagonal", load)
+    adapter.load(found)
+    return found
+
+
+def of(moments: list[float], **load: Array) -> System:
+    return System((Body(np.array(1.0), np.zeros(3), np.diag(moments)),), Load(**load))
+
+
+def exponential(vector: Array) -> Array:
+    """The quaternion of a rotation vector."""
+    half = float(norm(vector)) / 2
+    return np.array([np.cos(half), *(np.sinc(half / np.pi) / 2 * vector)])
+
+
+def test_it_describes_itself(engine: CommandAdapter) -> None:
+    own = description_of(engine)
+    assert own.name in ENGINES
+    assert own.licence
+    assert own.conventions
+    assert own.switched_off
+    assert own.precision == ("float64" if own.name in EPS else "float32")
+    assert not built(own.name, "as-shipped").description.switched_off
+
+
+def test_the_model_reads_back(engine: CommandAdapter) -> None:
+    """Caught: principal axes that are those of the transposed rotation."""
+    requested, eps = taken(engine), eps_of(engine)
+    (found,) = engine.model()
+    size = float(np.max(np.abs(requested.body.inertia)))
+    far = float(norm(requested.body.center_of_mass))
+    assert abs(found.mass - requested.body.mass) <= 4 * eps * requested.body.mass
+    assert np.max(np.abs(found.center_of_mass - requested.body.center_of_mass)) <= 4 * eps * far
+    assert np.max(np.abs(found.inertia - requested.body.inertia)) <= FEW * eps * size
+
+
+def test_states_come_back_as_they_went_in(engine: CommandAdapter) -> None:
+    requested, eps = taken(engine), eps_of(engine)
+    many, far = states(10, seed=1, far=3.0, fast=5.0), norm(requested.body.center_of_mass)
+    for row in range(10):
+        given = at(many, row)
+        engine.set_state(given)
+        found = engine.get_state()
+        assert attitude_angle(found.orientation, given.orientation) <= FEW * eps
+        for one, other in zip(parts(found)[1:], parts(given)[1:], strict=True):
+            assert norm(one - other) <= FEW * eps * (norm(other) + far)
+
+
+def test_a_run_logs_the_start_each_kth_step_and_the_last(engine: CommandAdapter) -> None:
+    taken(engine, "none")
+    start = at(states(1, seed=8, far=1.0, fast=2.0), 0)
+    assert np.array_equal(engine.run(start, "step", STEP, 0, 1).time, [0.0])
+    every, third = (engine.run(start, "step", STEP, 7, n) for n in (1, 3))
+    assert np.array_equal(third.time, np.array([0, 3, 6, 7]) * STEP)
+    for first, second in zip(parts(every.state), parts(third.state), strict=True):
+        assert np.array_equal(first[[0, 3, 6, 7]], second)
+
+
+def test_a_run_does_not_depend_on_earlier_calls(engine: CommandAdapter) -> None:
+    """Caught: a torque that Rapier goes on applying, forces that are left in a body."""
+    many = states(2, seed=7, far=1.0, fast=2.0)
+    pushed = of([1.0, 2.0, 2.5], torque_body=np.array([3.0, 2.0, 1.0]), gravity=GRAVITY)
+    plain = of([1.0, 2.0, 2.5])
+    engine.load(plain)
+    before = engine.run(at(many, 0), "step", STEP, 5, 2)
+    engine.load(pushed)
+    engine.run(at(many, 1), "step", 0.003, 3, 1)
+    engine.load(plain)
+    engine.set_state(at(many, 1))
+    after = engine.run(at(many, 0), "step", STEP, 5, 2)
+    for first, second in zip(parts(before.state), parts(after.state), strict=True):
+        assert np.array_equal(first, second)
+
+
+def test_what_is_not_finite_comes_back_as_nan(engine: CommandAdapter) -> None:
+    taken(engine)
+    start = at(states(1, seed=9, far=1.0, fast=2.0), 0)
+    broken = [np.array([1.0, np.nan, 0.0])]
+    if engine.description.precision == "float32":
+        broken.append(np.array([1.0, 1e39, 0.0]))
+    for spin in broken:
+        found = engine.run(replace(start, angular_velocity=spin), "step", STEP, 4, 2).state
+        assert np.all(np.isnan(found.angular_velocity[1:]))
+    sound = engine.run(start, "step", STEP, 4, 2).state
+    assert np.all(np.isfinite(sound.angular_velocity))
+
+
+def test_what_is_not_there_is_refused(engine: CommandAdapter) -> None:
+    moments = [1.0, 2.0, 3.0]
+    with pytest.raises(UnsupportedError, match="no pivoted bodies"):
+        engine.load(of(moments, pivot=np.zeros(3)))
+    with pytest.raises(UnsupportedError, match="no damping torque"):
+        engine.load(of(moments, damping=np.array(0.1)))
+    engine.load(of(moments))
+    with pytest.raises(UnsupportedError, match="no integrator 'leap'"):
+        engine.run(TURNED, "leap", STEP, 4, 2)
+    with pytest.raises(UnsupportedError, match="no operation forward"):
+        engine.forward_dynamics(TURNED)
+    if "full_inertia" not in engine.description.features:
+        with pytest.raises(UnsupportedError, match="no products"):
+            engine.load(system("full"))
+
+
+@pytest.mark.parametrize("name", SUBSTEPS)
+def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(name: str) -> None:
+    """``L1 = (L - h omega x L) |L| / |L - h omega x L|``, then torque, then an exponential.
+
+    Rapier does so in four substeps. Caught: a torque in the wrong axes, a tensor that is not
+    turned, an engine that steps something else than its note states.
+    """
+    torque, own = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.1, 0.2])
+    requested = system("full")
+    requested = replace(requested, load=Load(GRAVITY, torque_world=torque, torque_body=own))
+    start, adapter = at(states(1, seed=3, far=1.0, fast=2.0), 0), built(name)
+    adapter.load(requested)
+    found = adapter.run(start, "step", STEP, STEPS, STEPS).state[-1]
+    q, w, p, v = parts(start)
+    inertia, h = requested.body.inertia, STEP / SUBSTEPS[name]
+    for _ in range(STEPS):
+        applied = torque + rotate(q, own)
+        for _ in range(SUBSTEPS[name]):
+            momentum = inertia @ w
+            turned = momentum - h * cross(w, momentum)
+            turned *= norm(momentum) / norm(turned)
+            felt = rotate(q * [1, -1, -1, -1], applied)
+            w = np.linalg.solve(inertia, turned + h * felt)
+            v = v + h * GRAVITY
+            p = p + h * v
+            q = quaternion_product(q, exponential(h * w))
+    # each substep rounds states of a few units, and a system without growth adds that up
+    bound = FEW * SINGLE * STEPS * SUBSTEPS[name]
+    assert norm(found.angular_velocity - w) <= bound * norm(w)
+    assert attitude_angle(found.orientation, q) <= bound
+    assert norm(found.position - p) <= bound * norm(p)
+    assert norm(found.linear_velocity - v) <= bound * norm(v)
+
+
+def test_cannon_has_no_gyroscopic_term() -> None:
+    """``w1 = w + h R I^-1 R^T t`` in world axes, and a straight step of the quaternion."""
+    own, torque = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.1, 0.2])
+    moments = [1.0, 2.0, 2.5]
+    adapter = built("cannon-es")
+    adapter.load(of(moments, torque_body=own, torque_world=torque))
+    start = at(states(1, seed=3, far=1.0, fast=2.0), 0)
+    found = adapter.run(start, "step", STEP, STEPS, STEPS).state[-1]
+    q, w = start.orientation, rotate(start.orientation, start.angular_velocity)
+    for _ in range(STEPS):
+        felt = own + rotate(q * [1, -1, -1, -1], torque)
+        w = w + STEP * rotate(q, felt / moments)
+        q = q + 0.5 * STEP * quaternion_product(np.array([0.0, *w]), q)
+        q = q / norm(q)
+    bound = FEW * EPS["cannon-es"] * STEPS
+    assert attitude_angle(found.orientation, q) <= bound
+    assert norm(rotate(found.orientation, found.angular_velocity) - w) <= bound * norm(w)
+
+
+@pytest.mark.parametrize(
+    ("name", "factor"), [("cannon-es", 0.99**STEP), ("jolt-physics", 1 - 0.05 * STEP)]
+)
+def test_as_shipped_they_slow_a_body_down(name: str, factor: float) -> None:
+    """Neither has a gyroscopic term there: omega keeps its direction in world axes."""
+    for setup, kept in (("as-shipped", factor), ("physics", 1.0)):
+        adapter = built(name, setup)
+        adapter.load(of([2.0, 2.0, 2.0]))
+        found = adapter.run(TURNED, "step", STEP, 1, 1).state[-1].angular_velocity
+        assert norm(found - kept * TURNED.angular_velocity) <= FEW * SINGLE * norm(found)
+
+
+def test_as_shipped_jolt_turns_no_faster_than_its_limit() -> None:
+    """It is limited when it is set, and slowed down afterwards."""
+    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 100.0]))
+    limit = 0.25 * np.pi * 60 * (1 - 0.05 * STEP)
+    for setup, most in (("as-shipped", limit), ("physics", 100.0)):
+        adapter = built("jolt-physics", setup)
+        adapter.load(of([2.0, 2.0, 2.0]))
+        found = adapter.run(fast, "step", STEP, 1, 1).state[-1].angular_velocity
+        assert abs(found[2] - most) <= FEW * SINGLE * most
+
+
+def test_as_shipped_rapier_puts_a_slow_body_to_sleep() -> None:
+    slow = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 0.04]))
+    for setup, moves in (("as-shipped", False), ("physics", True)):
+        adapter = built("rapier3d-compat", setup)
+        adapter.load(of([2.0, 2.0, 2.0]))
+        found = adapter.run(slow, "step", 0.02, 200, 200).state[-1].angular_velocity
+        assert bool(found.any()) is moves
+
+
+def test_as_shipped_jolt_takes_no_small_moments() -> None:
+    """It holds those of a sphere of radius 1 m in their place."""
+    small = System((Body(np.array(1e-3), np.zeros(3), 1e-8 * system("full").body.inertia),))
+    for setup, expected in (("as-shipped", 4e-4 * np.eye(3)), ("physics", small.body.inertia)):
+        adapter = built("jolt-physics", setup)
+        adapter.load(small)
+        (found,) = adapter.model()
+        assert np.max(np.abs(found.inertia - expected)) <= FEW * SINGLE * np.max(expected)
+
+
+def test_as_shipped_jolt_puts_slow_bodies_to_sleep_and_no_others() -> None:
+    """Caught: a shape without size, whose bounds do not move however fast it turns."""
+    for spin, moves in ((2.0, True), (1e-3, False)):
+        adapter = built("jolt-physics", "as-shipped")
+        adapter.load(of([1.0, 2.0, 2.5]))
+        start = replace(TURNED, angular_velocity=np.array([0.0, spin, 0.0]))
+        found = adapter.run(start, "step", STEP, 100, 100).state[-1].angular_velocity
+        assert bool(found.any()) is moves
+
+
+def test_as_shipped_rapier_goes_no_faster_than_400_m_per_s() -> None:
+    fast = replace(TURNED, linear_velocity=np.array([1e3, 0.0, 0.0]))
+    for setup, most in (("as-shipped", 400.0), ("physics", 1e3)):
+        adapter = built("rapier3d-compat", setup)
+        adapter.load(of([1.0, 2.0, 2.5]))
+        found = adapter.run(fast, "step", STEP, 1, 1).state[-1].linear_velocity
+        assert abs(found[0] - most) <= FEW * SINGLE * most
+
+
+def test_rapier_cuts_omega_down_to_an_eighth_of_a_turn_in_a_step() -> None:
+    """No option changes that, so that the setup physics refuses to go on."""
+    limit = np.pi / 4 / STEP
+    for spin in (0.99 * limit, 1.2 * limit):
+        start = replace(TURNED, angular_velocity=np.array([0.0, 0.0, spin]))
+        shipped = built("rapier3d-compat", "as-shipped")
+        shipped.load(of([2.0, 2.0, 2.0]))
+        found = shipped.run(start, "step", STEP, 3, 3).state[-1].angular_velocity
+        assert abs(found[2] - min(spin, limit)) <= FEW * SINGLE * limit
+    adapter = built("rapier3d-compat")
+    adapter.load(of([2.0, 2.0, 2.0]))
+    assert adapter.run(start, "step", STEP / 2, 3, 3).state.orientation.shape == (2, 4)
+    with pytest.raises(UnsupportedError, match="at most 45 degrees in a step"):
+        adapter.run(start, "step", STEP, 3, 3)
