@@ -7,10 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.diagnosis.wording.digits import listed
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Array, State
 
 MOTION = {"orientation": "the attitude", "angular_velocity": "omega"}
 PLACES = {"position": "the position", "linear_velocity": "the linear velocity"}
+NEAR = 3  # units in the last place by which making it unit may change the largest part
+ROUNDINGS = 4.0
 IN_SINGLE = "in single precision"
 
 
@@ -19,8 +22,13 @@ def fields_in_single(came: State, due: State) -> list[str]:
     return [
         field
         for field in (*MOTION, *PLACES)
-        if _is_single(getattr(came, field)) and not _is_single(getattr(due, field))
+        if _in_single(field, came) and not _in_single(field, due)
     ]
+
+
+def _in_single(field: str, states: State) -> bool:
+    values = getattr(states, field)
+    return _is_single(values) or (field == "orientation" and _is_single_made_unit(values))
 
 
 def _is_single(values: Array) -> bool:
@@ -29,6 +37,26 @@ def _is_single(values: Array) -> bool:
     moves = bool(np.ptp(rows, axis=0).any())
     with np.errstate(over="ignore"):  # what single precision cannot hold is not in it
         return moves and np.array_equal(rows, rows.astype(np.float32).astype(float))
+
+
+def _is_single_made_unit(quaternions: Array) -> bool:
+    """Whether each is a quaternion of single numbers, made unit in double precision.
+
+    Its largest part is one of these within few units in the last place, and so are the others at
+    that length.
+    """
+    rows = np.reshape(quaternions, (-1, 4))
+    several = np.count_nonzero(rows, axis=-1) > 1
+    if not np.all(np.isfinite(rows)) or not np.ptp(rows, axis=0).any() or not np.any(several):
+        return False
+    rows = rows[several]
+    most = np.max(np.abs(rows), axis=-1, keepdims=True)
+    near, found = most.astype(np.float32), np.zeros(len(rows), bool)
+    for count in range(-NEAR, NEAR + 1):
+        whole = rows * ((near + count * np.spacing(near)).astype(float) / most)
+        off = np.abs(whole - whole.astype(np.float32).astype(float))
+        found |= np.all(off <= ROUNDINGS * EPS * most, axis=-1)
+    return bool(np.all(found))
 
 
 def named_single(fields: Sequence[str]) -> str:
