@@ -27,6 +27,7 @@ from omegadot.diagnosis.stepping.slips.old_operands import old_operands
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
+from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
 from omegadot.diagnosis.stepping.turns.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
@@ -80,7 +81,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = found or impulse_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
-        found = found or exponential_causes(by, runs)
+        found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
         return found or solved_causes(by, runs, declared) or place_causes(by, runs)
 
 
