@@ -107,7 +107,7 @@ def test_a_limit_shows_between_samples_of_several_steps() -> None:
 
 
 def test_a_limit_shows_where_the_turns_cross_it_between_samples() -> None:
-    """Caught: silence where the turns at two samples are on one side, and one between on another."""
+    """Caught: silence where turns between two samples are on another side than theirs."""
     (text,) = causes(series(lambda x: 0.5, 0.04, cosine=0.0), h=0.02, every=20)
     assert "ends before x^2/8 in cos(x/2) and x^2/48 in sin(x/2)/x, where the turn is" in text
     low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
