@@ -106,6 +106,14 @@ def test_a_limit_shows_between_samples_of_several_steps() -> None:
     assert low < 0.1 <= high
 
 
+def test_a_limit_shows_where_the_turns_cross_it_between_samples() -> None:
+    """Caught: silence where turns between two samples are on another side than theirs."""
+    (text,) = causes(series(lambda x: 0.5, 0.04, cosine=0.0), h=0.02, every=20)
+    assert "ends before x^2/8 in cos(x/2) and x^2/48 in sin(x/2)/x, where the turn is" in text
+    low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
+    assert 0.039 < low < 0.04 <= high
+
+
 def test_turns_that_are_off_by_no_series_are_not_named() -> None:
     assert causes(lambda u: exp_quaternion((1.0 + 0.01 * np.sin(40.0 * u[0])) * u)) == []
 

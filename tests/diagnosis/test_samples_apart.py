@@ -41,7 +41,12 @@ def test_attitudes_in_full_are_not_packed(sound: ReportedRun) -> None:
     assert precision_reported(sound) == ""
     single = normalize(sound.state.orientation.astype(np.float32).astype(float))
     state = replace(sound.state, orientation=single)
-    assert "packed" not in precision_reported(replace(sound, state=state))
+    found = precision_reported(replace(sound, state=state))
+    assert found == "the attitude is reported in single precision, and kept in double"
+    further = turn_in_body(sound.state.orientation, np.ones((len(single), 3)), 1e-4)
+    kept = normalize(further.astype(np.float32).astype(float))
+    found = precision_reported(replace(sound, state=replace(state, orientation=kept)))
+    assert found == "the attitude is kept in single precision"
 
 
 @pytest.mark.parametrize("field", ["position", "linear_velocity"])

@@ -54,9 +54,10 @@ def _is_own_in_single(reported: ReportedRun, single: Sequence[str]) -> bool:
     What is kept in single precision adds its roundings up, and other quantities follow it.
     """
     pairs = {f: (getattr(reported.state, f)[1:], getattr(reported.own, f)[1:]) for f in single}
-    for came, own in pairs.values():
+    for field, (came, own) in pairs.items():
         rounding = ROUNDINGS * EPS * float(np.max(np.abs(own)))
-        if not np.all(np.abs(came - own) <= HALF_A_DIGIT * np.abs(own) + rounding):
+        digits = 2.0 * HALF_A_DIGIT if field == "orientation" else HALF_A_DIGIT  # if made unit
+        if not np.all(np.abs(came - own) <= digits * np.abs(own) + rounding):
             return False
     others = replace(reported.state, **{field: getattr(reported.own, field) for field in single})
     return reported.agrees(others, reported.own)

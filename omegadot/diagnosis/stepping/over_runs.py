@@ -23,10 +23,11 @@ from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
-from omegadot.diagnosis.stepping.slips.old_operands import old_operands
+from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
+from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
 from omegadot.diagnosis.stepping.turns.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
@@ -78,10 +79,14 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or load_time_causes(by, runs) or spell_causes(by, runs)
         found = found or impulse_causes(by, runs)
-        found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
+        found = found or law_causes(by, chosen)
+        solves = by.scheme.name in SOLVED  # of an equation one iteration has old operands as well
+        found = found or ([] if solves else either(old_operands(by, chosen)))
         found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
-        found = found or exponential_causes(by, runs)
-        return found or solved_causes(by, runs, declared) or place_causes(by, runs)
+        found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
+        found = found or solved_causes(by, runs, declared)
+        found = found or (either(old_operands(by, chosen)) if solves else [])
+        return found or place_causes(by, runs)
 
 
 def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
@@ -96,11 +101,14 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
             continue
         terms.append((name, one.share))
         texts += either([f"in the steps, {text.format(name)}" for text in laws_of(points)])
-    texts = texts or old_operands(by, [run], least=1)
+    solves = by.scheme.name in SOLVED
+    texts = texts or ([] if solves else old_operands(by, [run], least=1))
     texts = texts or slips_in_stages(by.scheme.name, [run], least=1)
     if len(texts) > 1:
         return []
-    return texts or solved_causes(by, [run], declared=True) or place_causes(by, [run])
+    texts = texts or solved_causes(by, [run], declared=True)
+    texts = texts or (old_operands(by, [run], least=1) if solves else [])
+    return (texts or place_causes(by, [run])) if len(texts) < 2 else []
 
 
 def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:

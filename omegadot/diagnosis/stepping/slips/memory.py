@@ -11,7 +11,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
 from omegadot.reference_impl.one_body.body_motion import body_motion
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, System
@@ -19,11 +19,18 @@ from omegadot.reference_impl.system import Array, System
 BEFORE, FIRST, LAST, START = "the step before", "the run's start", "the stage before", "its start"
 EARLIER = "the start of the step before"
 PLACES = (BEFORE, EARLIER, FIRST, LAST, START)
+OWN_FIRST = f"{EARLIER} (in a run's first step, of its own start)"
+# Of a step that solves an equation, whose stages are guesses at one and the same middle.
+PLACES_OF_SOLVED = (BEFORE, EARLIER, OWN_FIRST, FIRST, START)
 
 
 @dataclass
 class Memory:
-    """What was evaluated in this step, in the one before, and first: lists of (lanes, ...)."""
+    """What was evaluated in this step, in the one before, and first: lists of (lanes, ...).
+
+    solves: whether a step solves an equation. What it evaluates are then guesses, of which the last
+    is its middle; its start is known by itself.
+    """
 
     system: System
     lanes: Sequence[tuple[tuple[str, ...], str]]
@@ -33,10 +40,14 @@ class Memory:
     start: Array | None = None
     earlier: Array | None = None
     timestep: float | Array = 0.0
+    solves: bool = False
+    starts: list[dict[str, Array]] = field(default_factory=list)
 
-    def begin(self, v: Array, h: float | Array) -> None:
-        """A step begins, of h s at these velocities."""
+    def begin(self, q: Array, v: Array, h: float | Array) -> None:
+        """A step begins, of h s at this place and these velocities."""
         self.before, self.now = self.now, {}
+        own = {"q": normalize(q[..., -4:]), "w": np.array(v[..., -3:])}
+        self.starts = [self.starts[0], self.starts[-1], own] if self.starts else [own]
         self.earlier = np.array(v) if self.start is None else self.start
         self.start, self.timestep = np.array(v), h
 
@@ -44,6 +55,9 @@ class Memory:
         """The value and those of the other places, by place; its own where there is none."""
         value = np.array(value)
         earlier, known = self.now.setdefault(kind, []), self.before.get(kind, [])
+        if self.solves and kind in self.starts[-1]:
+            earlier.append(value)
+            return self._solved(kind, value, known)
         place = len(earlier)
         first = self.first.setdefault(kind, value)
         found = {
@@ -56,6 +70,19 @@ class Memory:
         }
         earlier.append(value)
         return found
+
+    def _solved(self, kind: str, value: Array, known: Sequence[Array]) -> dict[str, Array]:
+        """Of a step's equation: its own value in the run's first step, where there is none."""
+        first, start = self.starts[0][kind], self.starts[-1][kind]
+        again = self.starts[-2][kind] if len(self.starts) > 1 else None
+        return {
+            "": value,
+            BEFORE: known[-1] if known else value,
+            EARLIER: value if again is None else again,
+            OWN_FIRST: start if again is None else again,
+            FIRST: first,
+            START: start,
+        }
 
     def taken(self, slot: str, values: dict[str, Array]) -> Array:
         """What an operand is in each lane."""

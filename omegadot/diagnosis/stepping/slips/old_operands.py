@@ -14,7 +14,7 @@ import numpy as np
 
 from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
-from omegadot.diagnosis.stepping.slips.memory import EARLIER, PLACES, Memory
+from omegadot.diagnosis.stepping.slips.memory import EARLIER, PLACES, PLACES_OF_SOLVED, Memory
 from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME
 from omegadot.diagnosis.stepping.slips.staged_steps import STAGED
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
@@ -23,7 +23,15 @@ from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Array, State, System
 
-STEPPED = {"semi-implicit-euler", "rk4-quaternion", "lie-rk4", "munthe-kaas-rk4", *EXPLICIT}
+SOLVED = {"implicit-midpoint"}  # by an equation, in which nothing but operands can be old
+STEPPED = {
+    *SOLVED,
+    "semi-implicit-euler",
+    "rk4-quaternion",
+    "lie-rk4",
+    "munthe-kaas-rk4",
+    *EXPLICIT,
+}
 # Operands that may be old together: what the cause states, of which place {} stands.
 OPERANDS: dict[str, tuple[str, ...]] = {
     "the torque of gravity is taken at the attitude of {}": ("weight",),
@@ -60,7 +68,7 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
         return []
     # within a step of these schemes the slips and the changes of single stages know the places
     within = name in STAGED or (name in OF_SCHEME and name not in EXPLICIT)
-    places = PLACES[:3] if within else PLACES
+    places = PLACES_OF_SOLVED if name in SOLVED else PLACES[:3] if within else PLACES
     shows = [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
     failing = len(shows)
     if failing < least:
@@ -88,6 +96,8 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
 def _differs(text: str, where: str, name: str) -> bool:
     """In a scheme of one stage the step before has one place for what is no velocity."""
     moves = bool({"turn", "move"} & {*OPERANDS[text]})
+    if name in SOLVED:
+        return not moves and "angular" not in OPERANDS[text]
     return where != EARLIER or name != "semi-implicit-euler" or moves
 
 
@@ -120,10 +130,11 @@ def _in_lanes(run: KeptRun, by: SchemeOf, lanes: Sequence[tuple[str, str]], coun
     """(lanes, count, ...): the scheme with each of these operands old, at the samples."""
     q, v = to_coordinates(run.system, run.state[0], "com-world")
     q, v = (np.broadcast_to(x, (len(lanes), *x.shape)).copy() for x in (q, v))
-    memory = Memory(run.system, [(OPERANDS[text], where) for text, where in lanes])
+    old = [(OPERANDS[text], where) for text, where in lanes]
+    memory = Memory(run.system, old, solves=by.scheme.name in SOLVED)
 
     def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-        memory.begin(v, h)
+        memory.begin(q, v, h)
         return by.scheme.step(motion, q, v, h)
 
     remembering, every = replace(by.scheme, step=step), run.sweep.every
