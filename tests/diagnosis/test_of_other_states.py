@@ -14,6 +14,7 @@ from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.evidence import ALONG, FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.wrong_equation import equation_causes
 from omegadot.diagnosis.wording.features import features_of
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.states.equation import random_states
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, State, System
@@ -81,6 +82,17 @@ def test_answers_in_no_known_order_are_those_of_other_states() -> None:
     (found,) = causes(placed(order))
     text = "states have the omega-dot of other states that are requested together with them"
     assert found == text
+
+
+@pytest.mark.parametrize(("sign", "order"), [(1.0, "ascending"), (-1.0, "descending")])
+def test_answers_in_the_order_of_their_speed_are_named(sign: float, order: str) -> None:
+    def answers(system: System, states: State, _: State) -> Acceleration:
+        true, speed = forward_dynamics(system, states), norm(states.angular_velocity)
+        return replace(true, angular=true.angular[np.argsort(sign * speed)])
+
+    (found,) = causes(answers)
+    text = f"the answers come in {order} order of |omega|"
+    assert found == f"of {N} states requested together, {text}"
 
 
 def test_answers_to_the_request_before_are_named() -> None:

@@ -13,11 +13,15 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import ALONG, BEYOND_ROUNDING, FORWARD, SLACK, Evidence
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import Array, State
 
 Places = NDArray[np.intp]
 Place = Callable[[Places, int], Places]  # of the answer, for each of so many states
 LEAST = 3  # states that are answered wrongly
+ORDERS: Mapping[str, Callable[[State], Array]] = {
+    "ascending order of |omega|": lambda states: norm(states.angular_velocity),
+    "descending order of |omega|": lambda states: -norm(states.angular_velocity),
+}
 LAST_BLOCK = 64  # the largest that is tried of blocks
 
 
@@ -41,6 +45,9 @@ def of_other_states(evidence: Mapping[str, Mapping[str, Evidence]], source: str)
     for text, place in _mappings(first, at):
         if all(_is_of(one, place(np.arange(len(one.sound)), len(one.sound))) for one in every):
             return f"of {count} states requested together, {text}"
+    for text, key in ORDERS.items():
+        if all(_is_of(one, np.argsort(key(one.states), kind="stable")) for one in every):
+            return f"of {count} states requested together, the answers come in {text}"
     if all(_is_of_any(one) for one in wrong):
         return "states have the omega-dot of other states that are requested together with them"
     return ""

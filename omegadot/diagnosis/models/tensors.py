@@ -48,6 +48,10 @@ def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:
             text = f"the product of inertia {name} {what}"
             signs = [factor if k == index else 1.0 for k in range(3)]
             yield text, _symmetric(tensor, partial(_times, signs))
+    for index, name in enumerate(names):
+        kept = [1.0 if k == index else 0.0 for k in range(3)]
+        text = f"of the products of inertia only {name} is kept"
+        yield text, _symmetric(tensor, partial(_times, kept))
 
 
 def other_tensors(system: System) -> dict[str, Array]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,12 @@ MOST_UNITS = 64  # of which the shortest step is made, where steps are whole num
 LEAST_OF_UNIT = 3  # different lengths that show a unit, and what is near to one by chance is not
 SHOWS_UNIT = 1e3  # units at most: of longer steps anything is nearly a whole number of them
 WHAT = "the length of a step"
+WHOLE_RATE = "the step is rounded to a whole number of steps in a second"
 CLOCK = ", and the clock goes on as requested"
+OTHER_LENGTHS: dict[str, Callable[[float], float]] = {
+    SINGLE: lambda h: float(np.float32(h)),
+    f"{WHOLE_RATE}, one at least": lambda h: 1.0 / max(1.0, round(1.0 / h)),
+}
 WAYS = (("rounded", np.round), ("cut off", np.floor), ("rounded up", np.ceil))
 
 
@@ -42,8 +47,9 @@ class _Taken:
 def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """What the steps' lengths are instead; none where they are right, or off by one part."""
     failing, sound = ([run for run in runs if run.fails is fails] for fails in (True, False))
-    if _single(by, failing):
-        return [SINGLE]
+    made = [text for text, length in OTHER_LENGTHS.items() if _are(length, by, failing)]
+    if len(made) == 1:
+        return made
     taken, missed = list[_Taken](), 0
     for count, run in enumerate(failing):
         one = _taken(run.short, by)
@@ -60,7 +66,7 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     right = [run.sweep.timestep for run in sound if run.sweep.timestep <= most]
     upto = steps <= most
     if _whole_rates(np.append(steps[upto], right), np.append(parts[upto], np.zeros(len(right)))):
-        return ["the step is rounded to a whole number of steps in a second"]
+        return [WHOLE_RATE]
     law = _law([*taken, *filter(None, (_taken(run.short, by) for run in _some(sound)))])
     return [
         f"{law}{CLOCK}"
@@ -71,13 +77,13 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     ]
 
 
-def _single(by: SchemeOf, failing: Sequence[KeptRun]) -> bool:
-    """Whether the steps of all runs that fail are the nearest number of single precision."""
+def _are(length: Callable[[float], float], by: SchemeOf, failing: Sequence[KeptRun]) -> bool:
+    """Whether the steps of all runs that fail have the length that is made of the requested one."""
     shown = 0
     for run in (one.short for one in failing):
-        h = float(np.float32(run.timestep))
+        h = length(run.timestep)
         other = replace(run, sweep=replace(run.sweep, timestep=h))
-        if h == run.timestep or not other.sound(by).all():
+        if not other.sound(by).all():
             return False
         shown += not run.sound(by).all()
     return shown >= LEAST
