@@ -109,6 +109,18 @@ def test_one_equation_is_more_than_a_model(tmp_path: Path, name: str) -> None:
     assert ran.passed
 
 
+def test_runs_that_pass_are_a_verdict_without_omega_dot(tmp_path: Path) -> None:
+    """Caught: "No verdict" on an engine every run of which passes, and gives no omega-dot."""
+    quick = quick_scenario(tmp_path)
+    own = "nodynamics holds every gate, and gives no omega-dot at a state."
+    alone = omegadot.run(quick, target("NoDynamics")).record.headline
+    assert own in alone
+    assert "No verdict" not in alone
+    beside = omegadot.run(quick, "mujoco:RK4", adapters=target("NoDynamics")).record.headline
+    assert beside.startswith("mujoco (of 2 engines) agrees with")
+    assert own in beside
+
+
 def test_beside_another_engine_a_model_alone_is_no_pass_either(tmp_path: Path) -> None:
     quick = quick_scenario(tmp_path)
     ran = omegadot.run(quick, "mujoco:RK4", adapters=target("ModelOnly"))

@@ -69,22 +69,32 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     # A declared exception is a known failure: such an engine is not reported as agreeing.
     excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
     agreeing = [name for name in measured if name in passed and name not in excused]
+    without = [name for name in engines if name in passed and name not in (*measured, *excused)]
     if excused and not agreeing:
         return f"Every gate holds except for declared exceptions: {listed(excused)}."
     if not agreeing:
-        return "No verdict: no run of an engine was judged on the equation of motion."
+        if not without:
+            return "No verdict: no run of an engine was judged on the equation of motion."
+        return f"{_without(without)}{_open(engines, without)}"
     largest = max((measured[name] for name in agreeing), key=size)
     named = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
     if len(agreeing) < len(engines):
         named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
-    apart += _open(engines, [*agreeing, *excused])
+    apart += f" {_without(without)}" if without else ""
+    apart += _open(engines, [*agreeing, *excused, *without])
     return (
         f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
         f"omega-dot residual is {quantity(largest.value, largest.unit)} "
         f"({largest.engine} on {largest.scenario}).{apart}"
     )
+
+
+def _without(names: Sequence[str]) -> str:
+    """Of engines that pass, and give no omega-dot that could be compared."""
+    holds, gives = ("holds", "gives") if len(names) == 1 else ("hold", "give")
+    return f"{listed(list(names))} {holds} every gate, and {gives} no omega-dot at a state."
 
 
 def _holds(cell: Cell) -> bool:
