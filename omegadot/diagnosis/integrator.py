@@ -17,7 +17,7 @@ from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
-from omegadot.diagnosis.run_rules import ENDS, LENGTHS, MOVED, STARTS
+from omegadot.diagnosis.run_rules import ENDS, LENGTHS, MOVED, READ, STARTS
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.loads.load_spell_laws import OF_SHARE
@@ -124,12 +124,12 @@ class IntegratorCauses:
         return own if any(map(is_named, own)) else together or own
 
     def _of_rules(self) -> list[str]:
-        """Where all runs begin or end, which samples are of another step, or a term of another."""
+        """Where all runs begin or end, how samples are read, of which step these or a term are."""
         name, again, how = self._case.name, self._kept.again, self._integrator
         runs, begins = self._over.runs, ""
         if again == AGAIN["negated"]:
             begins = runs.explains_negated(how, name)
-        kinds = (ENDS, MOVED) if again else (STARTS, ENDS, MOVED, LENGTHS)
+        kinds = (ENDS, MOVED) if again else (STARTS, READ, ENDS, MOVED, LENGTHS)
         found = begins or next(filter(None, (runs.explains(k, how, name) for k in kinds)), "")
         return [found] if found else []
 

@@ -111,6 +111,7 @@ def _keep(
         kept.ends += filter(None, (run_end(*how),))
         kept.negated += filter(None, (_negated(case.name, truth, result, growth, run),))
     stepping = {one.name for one in result.integrators if one.knob == "timestep"}
+    kept.given[case.name] = case.initial
     kept.requested[case.name] = [knob for name, knob in result.runs if name in stepping]
 
 
@@ -129,7 +130,7 @@ def _steps(
     tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
-    over.runs.steps[case.name], over.runs.given[case.name] = steps, case.initial
+    over.runs.steps[case.name] = steps
     over.stays_below[case.name] = steps.stays_below
     if beginning is not None and not steps.sound:
         over.keeps_pace[case.name] = keeps_pace(beginning, steps)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.ends.moved_samples import Moved, moved_samples
+from omegadot.diagnosis.stepping.ends.read_out import ReadOut, samples_read
 from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
 from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
@@ -16,7 +17,7 @@ from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.reference_impl.system import State
 
 # Each has a statement of all runs, and names of the scenarios whose failed runs this explains.
-RunRule = Starts | Ends | Moved | OtherLengths | Sleeps
+RunRule = Starts | ReadOut | Ends | Moved | OtherLengths | Sleeps
 
 
 @dataclass
@@ -72,9 +73,11 @@ class KeptRuns:
         return found.statement * all(found.makes(run, other) for run in runs)
 
 
-STARTS, ENDS, MOVED, LENGTHS, SLEEP = "starts", "ends", "moved", "lengths", "sleep"
+STARTS, READ, ENDS, MOVED = "starts", "read", "ends", "moved"
+LENGTHS, SLEEP = "lengths", "sleep"
 KINDS: Mapping[str, Callable[[Integrator, KeptRuns], RunRule | None]] = {
     STARTS: lambda how, runs: other_start(how, runs.steps, runs.given, runs.kept),
+    READ: lambda how, runs: samples_read(how, runs.steps, runs.given, runs.kept),
     ENDS: lambda how, runs: other_ends(how, runs.ends, runs.kept),
     MOVED: lambda how, runs: moved_samples(how, runs.kept),
     LENGTHS: lambda how, runs: other_lengths(how, runs.steps, runs.kept, runs.requested),

@@ -29,10 +29,16 @@ def step(
     return euler(motion, q, v, h, np.zeros(3))
 
 
-def moved(run: KeptRun, every: int, shift: Shift) -> KeptRun:
-    """Each sample as of so many steps more. run: of which each step is a sample."""
-    places = np.arange(0, len(run.times), every)[: STEPS + 1]
-    numbers = np.maximum(places + [shift(i) if i else 0 for i in range(len(places))], 0)
+def moved(run: KeptRun, every: int, shift: Shift, but_last: bool = False) -> KeptRun:
+    """Each sample as of so many steps more, or all but the last.
+
+    run: of which each step is a sample.
+    """
+    beyond = 3 * but_last  # steps after the last sample, which samples before it may be of
+    places = np.arange(0, len(run.times) - beyond, every)[: STEPS + 1]
+    moves = np.array([shift(i) if i else 0 for i in range(len(places))])
+    moves[-1] *= not but_last
+    numbers = np.maximum(places + moves, 0)
     sweep = replace(run.sweep, steps=int(places[-1]), every=every)
     bounds = {c: values[: len(places) - 1] for c, values in run.bounds.items()}
     state = run.state[np.minimum(numbers, len(run.times) - 1)]
@@ -40,13 +46,15 @@ def moved(run: KeptRun, every: int, shift: Shift) -> KeptRun:
     return replace(found, fails=not bool(np.all(found.sound(BY))))
 
 
-def found(*shifts: Shift, scheme: str | None = EULER, spoiled: str = "") -> tuple[str, set[str]]:
-    """Of runs whose samples are moved in one of these ways, in turn."""
+def found(
+    *shifts: Shift, scheme: str | None = EULER, spoiled: str = "", but_last: bool = False
+) -> tuple[str, set[str]]:
+    """Of runs whose samples, or all but the last, are moved in one of these ways, in turn."""
     runs = list[KeptRun]()
     for one in CASES:
         for h, every in PLANS:
             whole = kept(one, step, h, 1)
-            runs.append(moved(whole, every, shifts[len(runs) % len(shifts)]))
+            runs.append(moved(whole, every, shifts[len(runs) % len(shifts)], but_last))
             if one.name == spoiled:
                 w = runs[-1].state.angular_velocity.copy()
                 w[-1] += 1e-3
@@ -83,12 +91,42 @@ def test_samples_of_another_step_are_one_cause(shift: Shift, text: str, scheme: 
     assert found(shift, scheme=scheme) == (text, {one.name for one in CASES})
 
 
+@pytest.mark.parametrize(
+    ("shift", "text"),
+    [
+        (-1, "one step early"),
+        (1, "one step further"),
+        (-2, "two steps early"),
+        (2, "two steps further"),
+    ],
+)
+def test_all_samples_but_the_ends_are_one_cause(shift: int, text: str) -> None:
+    """Caught: "the same steps, requested again, give other samples", of another number of them."""
+    every_but = f"every sample of a run but the first and the last is the state {text}, at the "
+    names = {one.name for one in CASES}
+    assert found(lambda i: shift, but_last=True) == (f"{every_but}right time", names)
+
+
 def test_what_is_not_so_of_every_run_is_not_named() -> None:
     """Caught: one run's samples taken for those of all."""
     assert found(lambda i: 0) == ("", set())
     assert found(lambda i: -(i == 1), lambda i: 0) == ("", set())
     assert found(lambda i: -(i == 1), lambda i: -(i == 2)) == ("", set())
     assert found(lambda i: -(i >= 1)) == ("", set())
+    assert found(lambda i: -(i >= 2), but_last=True) == ("", set())
+    assert found(lambda i: -1, lambda i: 0, but_last=True) == ("", set())
+
+
+def test_runs_of_which_the_last_sample_is_not_kept_do_not_show_it_right() -> None:
+    """Caught: a first step that is not taken in long runs, taken for samples of another step."""
+    cut = list[KeptRun]()
+    for one in CASES:
+        for h, every in PLANS:
+            run = moved(kept(one, step, h, 1), every, lambda i: -1)
+            fewer = {c: values[:-1] for c, values in run.bounds.items()}
+            state = run.state[:-1]
+            cut.append(replace(run, times=run.times[:-1], state=state, bounds=fewer))
+    assert moved_samples(Integrator("own", EULER, dict.fromkeys(CHANNELS, 1)), cut) is None
 
 
 def test_a_scenario_that_is_wrong_elsewhere_is_left_to_other_causes() -> None:

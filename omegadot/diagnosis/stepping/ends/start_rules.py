@@ -25,6 +25,7 @@ FIELDS_OF_STATE = tuple(State.__dataclass_fields__)
 FIELDS = ("orientation", "angular_velocity", "linear_velocity", "position")
 MOST_PAIRS = 64  # attitudes that are taken through other conventions
 KNOWN_TO = 1e-9  # rad, about: what the limit of smooth steps is known to
+ELSEWHERE = "at another attitude: "
 Flags = NDArray[np.bool_]
 
 
@@ -48,6 +49,12 @@ def rules_of_starts(scenes: Sequence[VanishingSteps]) -> dict[str, Rule]:
             return {}
         found[name] = rule
     return found
+
+
+def convention_of_attitudes(scenes: Sequence[VanishingSteps]) -> str:
+    """Through which convention attitudes go, where no plainer rule makes them; else ""."""
+    rule = rules_of_starts(scenes).get("orientation")
+    return rule.text.removeprefix(ELSEWHERE) if rule is not None and rule.made is None else ""
 
 
 def _is_of(name: str, steps: VanishingSteps) -> bool:
@@ -123,7 +130,7 @@ def _of_convention(scenes: Sequence[VanishingSteps]) -> str:
     some = np.unique(np.linspace(0, len(given) - 1, MOST_PAIRS).astype(int))
     text = attitude_misread(given[some], begins[some], KNOWN_TO)
     text = text and attitude_misread(given, begins, KNOWN_TO)
-    return f"at another attitude: {text}" if text else ""
+    return f"{ELSEWHERE}{text}" if text else ""
 
 
 def _where(scenes: Sequence[VanishingSteps], fits: Sequence[Flags], jumps: Sequence[Flags]) -> str:
