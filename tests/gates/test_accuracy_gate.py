@@ -8,11 +8,14 @@ ones are good.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from in_process import builtin, truth_of
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.roundings import Roundings
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.verdicts import Finding
@@ -20,6 +23,7 @@ from omegadot.gates.steps.accuracy import (
     AccuracyRun,
     finest_of,
     fixed,
+    measure_accuracy,
     order_of,
     per_sample,
     steps_per_radian,
@@ -137,3 +141,15 @@ def test_steps_that_samples_end_become_no_shorter_than_a_weak_power_makes_them(
     """r^(1/(2p)), rounded up; where motion is slow against the samples, they count."""
     assert per_sample(Integrator("a", None, every_channel(order), "accuracy")) == steps
     assert steps - 1 < 100.0 ** (0.5 / order) <= steps
+
+
+def test_velocities_that_are_turns_over_a_step_have_a_bound() -> None:
+    """Caught: a division by zero, in the rounding of a step of no length."""
+    whole = builtin("t-handle")
+    case = replace(whole, sweeps=(Sweep(0.1, 20, 1, 1e-6),))
+    truth = truth_of(case, ()).of_roundings(Roundings(of_turns=True))
+    integrator = Integrator("own", None, every_channel(1), knob="accuracy")
+    sweep = case.sweeps[0]
+    found = measure_accuracy(truth, integrator, sweep, truth.at(sweep))
+    for bounds in (found.round_off, found.kept):
+        assert all(np.all(np.isfinite(values)) for values in bounds.values())

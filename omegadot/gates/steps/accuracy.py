@@ -118,9 +118,12 @@ def measure_accuracy(
     between = pace(truth) * sweep.timestep * steps_per_radian(integrator, sweep.accuracy)
     within = max(1.0, between)
     bound = yardstick.round_off(sweep.timestep / within, within * sweep.sample_steps, growth)
-    rounding = yardstick.round_off(0.0, np.zeros(1), np.ones(1))["omega"][0]
+    # a velocity that is a turn over a step has no rounding without one
+    length = sweep.timestep / within if yardstick.roundings.of_turns else 0.0
+    rounding = yardstick.round_off(length, np.zeros(1), np.ones(1))["omega"][0]
     off = PER_STEP * sweep.accuracy * steps_of(truth, integrator, sweep)
-    kept = yardstick.round_off(sweep.times / (off / rounding), off / rounding, growth)
+    times = np.maximum(sweep.times, sweep.timestep)
+    kept = yardstick.round_off(times / (off / rounding), off / rounding, growth)
     own = {**vars(measured), "round_off": bound}
     return AccuracyRun(**own, kept=kept)
 
