@@ -47,7 +47,9 @@ def _is_single_made_unit(quaternions: Array) -> bool:
     """
     rows = np.reshape(quaternions, (-1, 4))
     several = np.count_nonzero(rows, axis=-1) > 1
-    if not np.all(np.isfinite(rows)) or not np.ptp(rows, axis=0).any() or not np.any(several):
+    lengths = np.sqrt(np.sum(rows * rows, axis=-1))
+    unit = bool(np.all(np.abs(lengths - 1.0) <= ROUNDINGS * EPS))
+    if not unit or not np.ptp(rows, axis=0).any() or not np.any(several):
         return False
     rows = rows[several]
     most = np.max(np.abs(rows), axis=-1, keepdims=True)
