@@ -54,6 +54,7 @@ def extrapolated(values: Array) -> Array:
 
 FEWEST = 3  # states that show of which kind rounding is
 FARTHER = 64.0  # times: half way, by factors, from 16 to 256
+GROWN = 4.0  # times: half way, by factors, from 1 of a wrong equation to 16
 _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
 _AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of roundings of the rates
 
@@ -201,9 +202,10 @@ def roundings_of(
 
     The rounding of a velocity that is stepped is ``eps / h`` in its rate; that of places, over h,
     is ``eps / h^2``. By steps 16 times shorter the one is off 16 times as far, the other 256 times;
-    and a wrong equation as far as before. A few states show it where the velocity is the change of
-    place, or of attitude, over h. Single precision has no such steps: there that alone shows it, of
-    omega as well where that is the turn over h.
+    and a wrong equation as far as before. A few states, whose ratio is left to chance, show it
+    where the velocity is the change of place, or of attitude, over h, and the rate is off farther.
+    Single precision has no such steps: there that alone shows it, of omega as well where that is
+    the turn over h.
     """
     if len(ladder_of(eps).ranges) < 2:
         given = State(*(f.astype(np.float32).astype(float) for f in vars(probe.states).values()))
@@ -219,8 +221,9 @@ def roundings_of(
         long, short = norm(one.found - one.expected)[:2]
         seen = (long > 0.0) & (short > one.rounding[1])  # of what is stepped nothing is this far
         ratios = np.log(short[seen] / long[seen])
-        grows = len(ratios) > 0 and bool(np.mean(ratios) > np.log(FARTHER))
-        taken[channel] = grows and (len(ratios) >= FEWEST or is_change(*steps))
+        few = 0 < len(ratios) < FEWEST
+        grows = len(ratios) > 0 and bool(np.mean(ratios) > np.log(GROWN if few else FARTHER))
+        taken[channel] = grows and (not few or is_change(*steps))
     return Roundings(taken["linear_momentum"], taken["omega"], per_step)
 
 
