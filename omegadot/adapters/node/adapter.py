@@ -12,7 +12,7 @@ from omegadot.adapters.protocol import Setup
 
 
 def cannon_es(setup: Setup) -> str:
-    """cannon-es, in double precision. setup: given to the program when it is asked to describe."""
+    """cannon-es, in double precision. setup: the program receives it later, by the protocol."""
     return command_of("cannon-es")
 
 

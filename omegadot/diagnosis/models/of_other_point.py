@@ -18,7 +18,7 @@ POINTS = {
     1.0: "of the centre of mass taken for that of the body's origin",
     -1.0: "of the body's origin in place of that of the centre of mass",
 }
-# By quantity: in words, and what lies between the two points, in world axes and not turned.
+# By quantity: its name, and what lies between the two points, in world axes and not turned.
 BETWEEN = {
     "linear_velocity": ("the linear velocity", "R (omega x c)", "omega x c"),
     "position": ("the position", "R c", "c"),

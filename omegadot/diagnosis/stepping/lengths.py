@@ -27,10 +27,11 @@ LEAST_OF_UNIT = 3  # different lengths that show a unit, and what is near to one
 SHOWS_UNIT = 1e3  # units at most: of longer steps anything is nearly a whole number of them
 WHAT = "the length of a step"
 WHOLE_RATE = "the step is rounded to a whole number of steps in a second"
+ONE_AT_LEAST, LONGEST_OF_RATE = ", one at least", 2.0  # s: longer ones round to none a second
 CLOCK = ", and the clock goes on as requested"
 OTHER_LENGTHS: dict[str, Callable[[float], float]] = {
     SINGLE: lambda h: float(np.float32(h)),
-    f"{WHOLE_RATE}, one at least": lambda h: 1.0 / max(1.0, round(1.0 / h)),
+    f"{WHOLE_RATE}{ONE_AT_LEAST}": lambda h: 1.0 / max(1.0, round(1.0 / h)),
 }
 WAYS = (("rounded", np.round), ("cut off", np.floor), ("rounded up", np.ceil))
 
@@ -49,7 +50,9 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     failing, sound = ([run for run in runs if run.fails is fails] for fails in (True, False))
     made = [text for text, length in OTHER_LENGTHS.items() if _are(length, by, failing)]
     if len(made) == 1:
-        return made
+        # that there is one at least is seen in steps of which none makes a second
+        bare = all(run.timestep < LONGEST_OF_RATE for run in failing)
+        return [made[0].removesuffix(ONE_AT_LEAST) if bare else made[0]]
     taken, missed = list[_Taken](), 0
     for count, run in enumerate(failing):
         one = _taken(run.short, by)
