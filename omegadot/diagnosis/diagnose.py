@@ -103,12 +103,24 @@ class Causes:
             for name, one in self._cases[engine].items()
             if name != case and one.fails(integrator)
         }
-        text = of_few(text, list(every.values()))
+        text = of_few(text, self._shown_by(engine, case, integrator, text, every))
         if is_named(text):
             return text
         others = {name: other for name, other in every.items() if other}
         same = self._same_as_others(engine, case, integrator, text, others)
         return same or beside_others(text, list(every.values()))
+
+    def _shown_by(
+        self, engine: str, case: str, integrator: str | None, text: str, every: Mapping[str, str]
+    ) -> list[str]:
+        """The texts of other cases, of which those that are silent may show this cause as well.
+
+        Where only the same system with one thing changed fails, the cause is that of the others.
+        """
+        silent = [n for n, other in every.items() if not other and integrator is None]
+        cases = self._cases[engine]
+        same = {n for n in silent if is_named(text) and cases[n].siblings_follow(case)}
+        return [text if name in same else other for name, other in every.items()]
 
     def _same_as_others(
         self, engine: str, case: str, integrator: str | None, text: str, others: Mapping[str, str]

@@ -1,5 +1,9 @@
 """What is named on one scenario, beside what is named on the others that fail."""
 
+from types import SimpleNamespace
+from typing import Any
+
+from omegadot.diagnosis.diagnose import Causes
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.wording.among_others import beside_others, of_few
 
@@ -47,3 +51,24 @@ def test_the_cause_of_most_other_scenarios_stands_before_what_is_only_seen() -> 
     assert beside_others(seen, [named, seen]) == seen  # as many name nothing
     assert beside_others(seen, [named, "damping is ignored", seen]) == seen
     assert beside_others("", []) == ""
+
+
+def shown(text: str, made: bool) -> Any:
+    """A scenario that fails. made: whether the cause of others makes what fails here."""
+    return SimpleNamespace(
+        fails=lambda integrator: True,
+        sentences=lambda integrator: [text] * bool(text),
+        siblings_follow=lambda name: made,
+        of_forward_dynamics=False,
+    )
+
+
+def test_scenarios_that_fail_with_something_changed_alone_show_the_cause_that_makes_them() -> None:
+    """Caught: gravity along -z, called what few show where most scenarios have it along -z."""
+    for made in (True, False):
+        causes, down = Causes(), "gravity points along -z"
+        causes._cases["toy"] = {f"s{k}": shown("", made) for k in range(3)}
+        causes._cases["toy"]["tilted"] = shown(down, made)
+        found = [causes.text("toy", name, None) for name in causes._cases["toy"]]
+        assert (found == [down] * 4) is made
+        assert ("on 1 of the 4" in found[-1]) is not made
