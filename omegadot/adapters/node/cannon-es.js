@@ -10,7 +10,6 @@ async function open(folder) {
 }
 
 function description(api, setup) {
-  const channels = ['omega', 'attitude', 'energy', 'angular_momentum', 'linear_momentum', 'position'];
   return {
     name: 'cannon-es',
     licence: 'MIT',
@@ -18,8 +17,7 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'offset_com'],
     integrators: [{
       name: 'step',
-      scheme: null,
-      orders: Object.fromEntries(channels.map((channel) => [channel, 1])),
+      order: 1,
       note: "World.step: w1 = w + h R I^-1 R^T t in world axes, without omega x I omega; q1 = q + h/2 (0, w1) q, made unit",
     }],
     conventions: [

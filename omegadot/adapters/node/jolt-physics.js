@@ -38,7 +38,6 @@ function physics(api) {
 }
 
 function description(api, setup) {
-  const channels = ['omega', 'attitude', 'energy', 'angular_momentum', 'linear_momentum', 'position'];
   return {
     name: 'jolt-physics',
     licence: 'MIT',
@@ -46,8 +45,7 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'full_inertia', 'offset_com'],
     integrators: [{
       name: 'step',
-      scheme: null,
-      orders: Object.fromEntries(channels.map((channel) => [channel, 1])),
+      order: 1,
       note: 'JoltInterface.Step: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
     }],
     conventions: [

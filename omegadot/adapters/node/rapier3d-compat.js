@@ -18,7 +18,6 @@ async function open(folder) {
 }
 
 function description(api, setup) {
-  const channels = ['omega', 'attitude', 'energy', 'angular_momentum', 'linear_momentum', 'position'];
   return {
     name: 'rapier3d-compat',
     licence: 'Apache-2.0',
@@ -26,8 +25,7 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'full_inertia', 'offset_com'],
     integrators: [{
       name: 'step',
-      scheme: null,
-      orders: Object.fromEntries(channels.map((channel) => [channel, 1])),
+      order: 1,
       note: 'World.step, in numSolverIterations = 4 substeps: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
     }],
     conventions: [

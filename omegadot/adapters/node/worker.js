@@ -2,7 +2,8 @@
 // package.
 //
 // ENGINE.js exports `open(folder)`, which gives the engine's API, and makes of it
-//   description(api, setup)            what docs/worker-protocol.md requires of `describe`
+//   description(api, setup)            what docs/worker-protocol.md requires of `describe`, but for the
+//                                      version; an integrator has one order in all channels
 //   refused(body)                      why it cannot take a body, or ''
 //   World(api, setup, body, gravity)   a world with the body, anew for each run:
 //     put(state), state()              a state is { q, w, p, v }, all in world axes, p and v of the
@@ -18,6 +19,7 @@ const path = require('path');
 const { Table, Unsupported, receive, send } = require('./channel.js');
 const { conjugate, rotated } = require('./rotations.js');
 
+const CHANNELS = ['omega', 'attitude', 'energy', 'angular_momentum', 'linear_momentum', 'position'];
 const KEYS = { orientation: 'q', angular_velocity: 'w', position: 'p', linear_velocity: 'v' };
 
 class Server {
@@ -27,7 +29,8 @@ class Server {
 
   describe({ setup }) {
     this.setup = setup;
-    this.known = { version: this.version, ...this.engine.description(this.api, setup) };
+    const { integrators, ...rest } = this.engine.description(this.api, setup);
+    this.known = { version: this.version, ...rest, integrators: integrators.map(withOrders) };
     return this.known;
   }
 
@@ -103,6 +106,11 @@ class Server {
     while (rows.length < kept.length) rows.push(NONE);
     return { rows, seconds };
   }
+}
+
+function withOrders({ name, order, note }) {
+  const orders = Object.fromEntries(CHANNELS.map((channel) => [channel, order]));
+  return { name, scheme: null, orders, note };
 }
 
 const NONE = { q: Array(4).fill(NaN), w: Array(3).fill(NaN), p: Array(3).fill(NaN), v: Array(3).fill(NaN) };
