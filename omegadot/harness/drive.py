@@ -47,6 +47,7 @@ class CaseResult:
     opposites: the same by what is the other way than in the system, where forward dynamics are
     wrong; judged by no gate.  opposite_steps: by integrator and by that, first steps where these
     alone are wrong.
+    turned: by integrator and its step, the states of the same run in turned worlds, turned back.
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
@@ -71,6 +72,7 @@ class CaseResult:
     opposite_steps: dict[tuple[str, str], tuple[System, Probe, Answer]] = field(
         default_factory=dict
     )
+    turned: dict[tuple[str, float], list[State]] = field(default_factory=dict)
     reloaded: Answer = LACKING
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"

@@ -42,6 +42,7 @@ from omegadot.harness.requests.truth_requests import (
     case_truth,
     reference_runs,
 )
+from omegadot.harness.requests.turned import request_turned
 from omegadot.harness.requests.until_raised import request_until_raised
 
 
@@ -186,7 +187,10 @@ class Runner:
         return EngineCase(engine, result, shared, runs)
 
     def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
-        """Judge a case again with finer steps, as long as these can still decide something."""
+        """Judge a case again with finer steps, as long as these can still decide something.
+
+        Then with the axes of the world turned, where these can.
+        """
         finer: dict[str, Refinements] = {}
         for _ in range(MOST_HALVINGS):
             futures = []
@@ -200,7 +204,21 @@ class Runner:
             if not any(done):
                 break
             judged = self.judge(pending, finer)
-        return judged
+        return self._in_other_worlds(pending, judged, finer)
+
+    def _in_other_worlds(
+        self, pending: PendingCase, judged: JudgedCase, finer: dict[str, Refinements]
+    ) -> JudgedCase:
+        """Judge a case again where the axes of the world can decide; see `errors.coordinates`."""
+        futures = []
+        for found in judged.engines:
+            name, runs = found.engine.name, [run for run in found.runs if run.by_axes]
+            if runs:
+                how = (self.engines.drivers[name], judged.case, found.result, runs)
+                futures.append(self.engines.submit(name, partial(request_turned, *how)))
+        for future in futures:
+            outcome_of(future)
+        return self.judge(pending, finer) if futures else judged
 
     def run_case(self, case: Case) -> JudgedCase:
         """One case by itself; the workers are started before and finished after by the caller.

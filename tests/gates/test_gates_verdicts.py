@@ -165,9 +165,10 @@ def test_an_overflow_is_no_other_scheme_where_rounding_is_as_large_as_the_motion
 def test_an_error_that_finer_steps_do_not_explain_fails() -> None:
     seen = replace(evidence([0.0, 1.0, 1.0], None, None, ObservedOrder(1.0, True)), excess=1.1)
     assert judge(seen, "euler", 1) == Finding(
-        "unexplained",
+        "outlying",
         "at this step the error is 1.1 times what the errors at other steps let it be",
     )
+    assert judge(seen, "euler", 1).verdict == "fail"
     assert judge(replace(seen, excess=1.0), "euler", 1).kind == "consistent"
     assert judge(replace(seen, settled=False), "euler", 1).kind == "unsettled"
 

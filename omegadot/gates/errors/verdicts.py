@@ -31,7 +31,8 @@ class Finding:
     """One channel of one run, judged.
 
     kind: "round-off", "explained", "consistent", "beyond" (there is nothing to judge by),
-    "unresolved" (the order is hidden), "unsettled" (it is not, and there is none) or "unexplained".
+    "unresolved" (the order is hidden), "unsettled" (it is not, and there is none), "outlying" (it
+    shrinks as declared, but at this step it is larger than that explains) or "unexplained".
     note: the reason as text.
     """
 
@@ -190,6 +191,6 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         times = f"{written(evidence.excess, 2)} times what the errors at other steps let it be"
         note = f"at this step the error is {times}"
         if evidence.settled:
-            return Finding("unexplained", note)
+            return Finding("outlying", note)
         return Finding("unsettled", f"{UNSETTLED}: {note}")
     return Finding("consistent", f"consistent: {text}")

@@ -33,6 +33,7 @@ class JudgedRun:
     """One task's outcome, rows and reason.
 
     unresolved: a finer sweep could still decide.  finer: that sweep, where it is not half the step.
+    by_axes: the axes of the world could still decide whether a long step errs by its coordinates.
     """
 
     integrator: Integrator
@@ -43,6 +44,7 @@ class JudgedRun:
     why: str = ""
     unresolved: bool = False
     finer: Sweep | None = None
+    by_axes: bool = False
 
     @property
     def fails(self) -> bool:
@@ -57,7 +59,7 @@ def is_finite(state: State) -> bool:
 
 # From the least favourable.
 _FINDINGS = (
-    *("unexplained", "unsettled", "unresolved", "beyond"),
+    *("unexplained", "outlying", "unsettled", "unresolved", "beyond"),
     *("consistent", "explained", "round-off"),
 )
 

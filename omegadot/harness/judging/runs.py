@@ -8,7 +8,7 @@ from dataclasses import replace
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.errors import rounding_step
+from omegadot.gates.errors import coordinates, rounding_step
 from omegadot.gates.errors.measured_run import (
     Declared,
     MeasuredRun,
@@ -93,6 +93,12 @@ def _judge_steps(
             findings = _undetermined(truth, findings)
             yield diverged(integrator, sweep, answer, measured, findings, eps)
             continue
+        by_axes = coordinates.may_decide(truth, measured, findings)
+        if by_axes and (integrator.name, sweep.knob) in result.turned:
+            turned = result.turned[integrator.name, sweep.knob]
+            again = [measure(truth, sweep, one, None) for one in turned]
+            findings = coordinates.in_other_worlds(measured, findings, again, declared, known)
+            by_axes = False
         if integrator.knob == "fixed-accuracy":
             findings = accuracy.fixed(findings)
         match = scheme.match_row(truth, integrator, measured, state)
@@ -105,7 +111,7 @@ def _judge_steps(
         # what is broken at this step stays so, whatever finer ones show
         unresolved = not broken and _finer_steps_decide(findings, known)
         rows = [match, *orders, *grows, *rows]
-        yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved, by_axes=by_axes)
 
 
 def _left_open(findings: dict[str, Finding]) -> dict[str, Finding]:
