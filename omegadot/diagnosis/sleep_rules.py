@@ -17,7 +17,7 @@ from omegadot.diagnosis.stepping.vanishing.sleep_laws import Sleeps, law_of_slee
 ByScenario = Mapping[str, Rests]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Shown:
     """Of one integrator: what its runs show, and single steps on each scenario.
 
