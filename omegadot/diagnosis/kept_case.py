@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
-from omegadot.diagnosis.reported.run import reported_run
 from omegadot.diagnosis.run_rules import KeptRuns
 from omegadot.diagnosis.stepping.ends.run_ends import run_end
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
@@ -94,9 +93,11 @@ def kept_case(
     steps = _steps(over, case, result, runs, beginning)
     probe, answer = result.first_steps.get(runs[0].integrator.name, (None, None))
     stepped = State(**answer.result) if answer is not None and answer.ok else None
-    over.frozen[case.name] = freezes_of(case.system, probe, stepped, [one for one, _, _ in whole])
-    over.rests[case.name] = rests_of(
-        case.system, probe, stepped, [*_with_rests(case, truth, result, runs)]
+    over.asleep.frozen[case.name] = freezes_of(
+        case.system, probe, stepped, [one for one, _, _ in whole]
+    )
+    over.asleep.rests[case.name] = rests_of(
+        case.system, probe, stepped, [*_with_rests(truth, result, runs)]
     )
     return KeptCase(case.name, runs[0].integrator, again, beginning, turned_wrong, brief, steps)
 
@@ -195,15 +196,13 @@ def _negated(
 
 
 def _with_rests(
-    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
 ) -> Iterator[RunWithRests]:
     """The runs that were answered in full."""
     for run in runs:
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok and len(answer.result["time"]) == len(run.sweep.times):
-            one = RunWithRests(State(**answer.result["state"]), truth.at(run.sweep), None)
-            how = (case, truth.in_precision(result.precision), result, run)
-            yield replace(one, reported=reported_run(*how)) if one.rests else one
+            yield RunWithRests(State(**answer.result["state"]), truth.at(run.sweep))
 
 
 def _beginning_of(

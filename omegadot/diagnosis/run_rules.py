@@ -12,12 +12,13 @@ from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
 from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths
-from omegadot.diagnosis.stepping.vanishing.sleep_counts import Sleeps, sleeping_runs
+from omegadot.diagnosis.stepping.vanishing.sleep_counts import sleeping_runs
+from omegadot.diagnosis.stepping.vanishing.sleep_laws import Sleeps
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.reference_impl.system import State
 
 # Each has a statement of all runs, and names of the scenarios whose failed runs this explains.
-RunRule = Starts | ReadOut | Ends | Moved | OtherLengths | Sleeps
+RunRule = Starts | ReadOut | Ends | Moved | OtherLengths
 
 
 @dataclass
@@ -39,6 +40,7 @@ class KeptRuns:
     given: dict[str, State] = field(default_factory=dict)
     requested: dict[str, list[float]] = field(default_factory=dict)
     _found: dict[str, tuple[tuple[int, ...], RunRule | None]] = field(default_factory=dict)
+    _slept: tuple[int, Sleeps | None] = (0, None)
 
     def rule(self, kind: str, integrator: Integrator) -> RunRule | None:
         """The rule of this kind, of KINDS; looked for again where more is kept."""
@@ -59,8 +61,9 @@ class KeptRuns:
     @property
     def sleeps(self) -> Sleeps | None:
         """After what a body is put to sleep in these runs; None where none is seen to be."""
-        found = self.rule(SLEEP, self.integrator) if self.integrator is not None else None
-        return found if isinstance(found, Sleeps) else None
+        if self.integrator is not None and self._slept[0] != len(self.kept):
+            self._slept = len(self.kept), sleeping_runs(self.integrator, self.kept)
+        return self._slept[1]
 
     def explains_negated(self, integrator: Integrator, name: str) -> str:
         """At which other state all runs begin, where that makes those from -q; else ""."""
@@ -74,12 +77,11 @@ class KeptRuns:
 
 
 STARTS, READ, ENDS, MOVED = "starts", "read", "ends", "moved"
-LENGTHS, SLEEP = "lengths", "sleep"
+LENGTHS = "lengths"
 KINDS: Mapping[str, Callable[[Integrator, KeptRuns], RunRule | None]] = {
     STARTS: lambda how, runs: other_start(how, runs.steps, runs.given, runs.kept),
     READ: lambda how, runs: samples_read(how, runs.steps, runs.given, runs.kept),
     ENDS: lambda how, runs: other_ends(how, runs.ends, runs.kept),
     MOVED: lambda how, runs: moved_samples(how, runs.kept),
     LENGTHS: lambda how, runs: other_lengths(how, runs.steps, runs.kept, runs.requested),
-    SLEEP: lambda how, runs: sleeping_runs(how, runs.kept),
 }

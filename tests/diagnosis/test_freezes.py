@@ -55,7 +55,7 @@ def by_both(system: System, states: State) -> NDArray[np.bool_]:
 def test_a_limit_below_which_steps_change_nothing_is_named() -> None:
     """Caught: "the body does not move in the run", of a body that is slow."""
     engine = EngineOverScenarios()
-    engine.integrators["one"].frozen |= frozen(by_both)
+    engine.integrators["one"].asleep.frozen |= frozen(by_both)
     free, pivoted = (engine.sleep("one", name) for name in ("body-0", "body-2"))
     assert free.startswith(f"{FREEZES} where the body is free and |omega| is below a limit between")
     assert "and its speed is below one between" in free

@@ -13,7 +13,8 @@ from wrong_equations import PIVOT, TENSOR, case
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.vanishing.sleep_counts import Sleeps, sleeping_runs
+from omegadot.diagnosis.stepping.vanishing.sleep_counts import sleeping_runs
+from omegadot.diagnosis.stepping.vanishing.sleep_laws import Sleeps
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.energy import kinetic_energy
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -24,6 +25,7 @@ from omegadot.reference_impl.system import State, System
 
 Rule = Callable[[System, State], NDArray[np.bool_]]
 SCHEME, H, STEPS = "semi-implicit-euler", 0.05, 60
+LENGTHS = (H, 0.08, 0.11)
 INTEGRATOR = Integrator("own", SCHEME, dict.fromkeys(CHANNELS, 1))
 AT_PIVOT, PUSHED = {"pivot": PIVOT}, {"gravity": [0.01, 0.0, -0.02]}
 
@@ -92,8 +94,23 @@ def falls(one: Case, rule: Rule, count: int, given: bool = False, h: float = H) 
 def found(
     rule: Rule, count: int, given: bool = False, every: Sequence[int] = (1, 4)
 ) -> Sleeps | None:
-    runs = [kept(one, falls(one, rule, count, given), n) for one in CASES for n in every]
-    return sleeping_runs(INTEGRATOR, runs)
+    return sleeping_runs(INTEGRATOR, runs_of(rule, count, given, every))
+
+
+def runs_of(
+    rule: Rule,
+    count: int,
+    given: bool = False,
+    every: Sequence[int] = (1, 4),
+    cases: Sequence[Case] = CASES,
+) -> list[KeptRun]:
+    """Of several lengths of step: of one alone a number of steps is a time as well."""
+    return [
+        kept(one, falls(one, rule, count, given, h), n, h=h)
+        for one in cases
+        for n in every
+        for h in LENGTHS
+    ]
 
 
 def by_energy_per_mass(system: System, states: State) -> NDArray[np.bool_]:
@@ -165,7 +182,7 @@ def test_a_body_that_moves_and_does_not_turn_falls_asleep_as_well() -> None:
     """Caught: what its omega is not off in was taken for another cause."""
     turns = slowed(len(CASES), {}, 20.0, 1.0, 0.2)
     flies = replace(turns, initial=replace(turns.initial, angular_velocity=np.zeros(3)))
-    runs = [kept(one, falls(one, by_omega, 5), n) for one in (*CASES, flies) for n in (1, 4)]
+    runs = runs_of(by_omega, 5, cases=(*CASES, flies))
     found = sleeping_runs(INTEGRATOR, runs)
     assert found is not None
     assert "|omega| is below a limit" in found.statement
@@ -182,7 +199,7 @@ def test_runs_that_stop_without_a_limit_are_not_named() -> None:
 
 
 def test_a_run_that_is_wrong_before_it_rests_is_not_explained() -> None:
-    runs = [kept(one, falls(one, by_energy_per_mass, 5), 4) for one in CASES]
+    runs = runs_of(by_energy_per_mass, 5, every=(4,))
     wrong = replace(runs[0].state, position=1.1 * runs[0].state.position)
     one = sleeping_runs(INTEGRATOR, [replace(runs[0], state=wrong), *runs[1:]])
     assert one is not None
@@ -195,10 +212,61 @@ def test_one_law_is_named_of_all_integrators() -> None:
     for name, every in (("one", 1), ("two", 4)):
         runs = engine.integrators[name].runs
         runs.integrator = replace(INTEGRATOR, name=name)
-        runs.kept += [kept(c, falls(c, by_energy_per_mass, 5), every) for c in CASES]
+        runs.kept += runs_of(by_energy_per_mass, 5, every=(every,))
     engine.integrators["sound"].runs.integrator = replace(INTEGRATOR, name="sound")
     texts = {engine.sleep(name, CASES[0].name) for name in ("one", "two")}
     assert len(texts) == 1
     assert " in 5 steps in a row" in texts.pop()
     assert engine.sleep("one", CASES[8].name) == ""
     assert engine.sleep("sound", CASES[0].name) == ""
+
+
+def of_time(
+    rule: Rule, seconds: float, lengths: Sequence[float], cases: Sequence[Case] = CASES
+) -> str:
+    """What is named of runs that wait for so long below the limit."""
+    runs = [
+        kept(one, falls(one, rule, int(np.ceil(seconds / h - 1e-9)), h=h), every, h=h)
+        for h in lengths
+        for one in cases
+        for every in (1, 4)
+    ]
+    found = sleeping_runs(INTEGRATOR, runs)
+    return found.statement if found is not None else ""
+
+
+@pytest.mark.parametrize(
+    ("rule", "cases", "lengths", "seconds"),
+    [
+        (by_omega, CASES[:10], LENGTHS, 0.6),
+        (by_omega, CASES[3:12], (0.05,), 0.25),
+        (by_energy_per_mass, CASES, (0.05, 0.1), 0.6),
+        (by_energy, (*CASES[3:6], *CASES[8:]), (0.05, 0.1), 0.6),
+    ],
+)
+def test_no_limit_is_named_without_a_time_where_one_may_have_passed(
+    rule: Rule, cases: Sequence[Case], lengths: Sequence[float], seconds: float
+) -> None:
+    """Caught: a lower limit and no time, by counts that were looked at first."""
+    text = of_time(rule, seconds, lengths, cases)
+    assert text == "" or " for a time between " in text
+
+
+def test_a_limit_alone_is_named_where_no_number_and_no_time_fit() -> None:
+    """Caught: "for a time between 0 and 0.05 s", or nothing, of bodies that do not wait."""
+    one = found(by_energy_per_mass, 1)
+    assert one is not None
+    assert "its kinetic energy over its mass is below a limit between" in one.statement
+    assert "in a row" not in one.statement
+    assert "for a time" not in one.statement
+
+
+def test_of_one_length_of_step_a_number_of_steps_is_a_time_as_well() -> None:
+    """Caught: either of the two, which runs of other steps may contradict."""
+    runs = [kept(one, falls(one, by_energy_per_mass, 5), n) for one in CASES for n in (1, 4)]
+    assert sleeping_runs(INTEGRATOR, runs) is None
+
+
+def test_few_scenarios_that_chance_sorts_name_no_law() -> None:
+    """Caught: a limit that two bodies at rest and one that moves happen to leave."""
+    assert of_time(by_omega, 0.25, LENGTHS, (CASES[0], CASES[3], CASES[8])) == ""

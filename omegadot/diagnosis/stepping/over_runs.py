@@ -25,6 +25,7 @@ from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
+from omegadot.diagnosis.stepping.slips.switched import switched
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
@@ -74,7 +75,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = between_steps(by, runs) or substeps_of_runs(integrator, by, chosen)
+        found = switched(by, runs) or between_steps(by, runs)
+        found = found or substeps_of_runs(integrator, by, chosen)
         found = found or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or load_time_causes(by, runs) or spell_causes(by, runs)

@@ -21,22 +21,25 @@ def freezes_of(
 ) -> Rests:
     """From single steps of a probe (m, k), and from the samples of runs.
 
-    A state from which not one of the steps, and no interval, leads anywhere is frozen, where the
-    body turns or moves.
+    A state from which not one of the steps leads anywhere, or not the first interval of a run, is
+    frozen, where the body turns or moves; what becomes so later may depend on the steps before.
     """
-    frozen, moving = list[State](), list[State]()
+    frozen, left = list[State](), list[State]()
     if probe is not None and stepped is not None:
         stays = np.all(_same(system, probe.states[:, None], stepped), axis=-1)
         frozen.append(probe.states[stays & _goes(probe.states)])
-        moving.append(probe.states[~stays])
+        left.append(probe.states[~stays])
+    moving, seen = [*left], bool(frozen and len(frozen[0].position))
     for run in runs:
         begins, stays = run[:-1], _same(system, run[:-1], run[1:])
-        frozen.append(begins[stays & _goes(begins)])
         moving.append(begins[~stays])
-    known = sum(len(one.position) for one in frozen)
+        stays &= _goes(begins)
+        frozen.append(begins[:1][stays[:1]])
+        seen |= bool(np.any(stays))
+    known, goes_on = (sum(len(one.position) for one in part) for part in (frozen, left))
     ends = extremes_of(system, frozen, np.max), extremes_of(system, moving, np.min)
     pivoted = system.load.pivot is not None
-    return Rests(known > 0, known, *ends, least_of(moving), pivoted)
+    return Rests(seen, known, goes_on, *ends, least_of(moving), pivoted)
 
 
 def _same(system: System, before: State, after: State) -> NDArray[np.bool_]:

@@ -1,18 +1,20 @@
 """A body that is put to sleep: of which quantity a limit holds on every scenario.
 
 What is kept of a scenario is small: of every quantity the largest at which the body was put to
-rest, and the least at which it was left moving.
+rest, and the least at which it was left moving. It is put to rest by single steps: a run that falls
+asleep may have been below a limit for some steps or some time before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.wording.conditions import ODDS
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.steps.probe import Probe
@@ -65,13 +67,15 @@ def quantities(system: System, states: State) -> dict[str, Array]:
 class Rests:
     """Of one integrator on one scenario. seen: whether a body is put to rest that should move.
 
-    known: at how many states of which the quantities are known.  at_rest and moving: by quantity,
-    the largest that was put to rest and the least that was not.  least: (k, 2) |omega| and speed
-    of states that move; of all others one of these is no faster in either.
+    known and left: how many states single steps put to rest, and how many they left moving.
+    at_rest and moving: by quantity, the largest that was put to rest and the least that was not,
+    in runs as well.  least: (k, 2) |omega| and speed of states that move; of all others one of
+    these is no faster in either.
     """
 
     seen: bool
     known: int
+    left: int
     at_rest: dict[str, float]
     moving: dict[str, float]
     least: Array
@@ -80,11 +84,10 @@ class Rests:
 
 @dataclass(frozen=True)
 class RunWithRests:
-    """A run's samples, those of the exact motion, and next to the reference's where it rests."""
+    """A run's samples, and those of the exact motion."""
 
     state: State
     exact: State
-    reported: ReportedRun | None
 
     @property
     def rests(self) -> bool:
@@ -101,19 +104,19 @@ def rests_of(
     system: System, probe: Probe | None, stepped: State | None, runs: Sequence[RunWithRests]
 ) -> Rests:
     """From single steps of a probe (m, k), the last of each the shortest, and from the runs."""
-    resting, moving = list[State](), list[State]()
-    for run in runs:
-        moving.append(run.state[1:][~stands(run.state)[1:]])  # the start is given
-        resting += _where_it_falls_asleep(run.reported) if run.reported else ()
+    resting, left = list[State](), list[State]()
+    # the start is given
+    moving = [run.state[1:][~stands(run.state)[1:]] for run in runs]
     if probe is not None and stepped is not None:
         # in the shortest steps nothing but sleep takes all of omega
         after = stands(State(*(values[:, -1] for values in vars(stepped).values())))
         resting.append(probe.states[after & ~stands(probe.states)])
-        moving.append(probe.states[~after])
-    known = sum(len(one.position) for one in resting)
+        left.append(probe.states[~after])
+    known, still = (sum(len(one.position) for one in part) for part in (resting, left))
+    moving += left
     seen = known > 0 or any(run.rests for run in runs)
     ends = extremes_of(system, resting, np.max), extremes_of(system, moving, np.min)
-    return Rests(seen, known, *ends, least_of(moving), system.load.pivot is not None)
+    return Rests(seen, known, still, *ends, least_of(moving), system.load.pivot is not None)
 
 
 def least_of(parts: Sequence[State]) -> Array:
@@ -133,20 +136,20 @@ def extremes_of(
     return {name: float(end([end(one[name]) for one in every])) for name in UNITS if every}
 
 
-def _where_it_falls_asleep(run: ReportedRun) -> Iterator[State]:
-    """The right end of the step in which a run falls asleep that is sound until then."""
-    asleep = stands(run.state)
-    first = int(np.argmax(asleep))
-    before, here = slice(0, first), slice(first, first + 1)
-    each = run.sweep.every == 1 and first > 0 and not stands(run.own)[first]
-    if each and run.agrees(run.state[before], run.own[before], before):
-        yield run.own[here]
+def _known(every: Sequence[Rests]) -> int:
+    """Of states that single steps have led on from, or not."""
+    return sum(one.known + one.left for one in every)
+
+
+def _ways(every: Sequence[Rests]) -> int:
+    """In how many ways chance may put so many states to rest, and leave the others moving."""
+    return comb(_known(every), sum(one.known for one in every))
 
 
 def _of_two(every: Sequence[Rests]) -> str:
     """Limits of omega and of speed, of which both hold at once; "" without any."""
-    if sum(one.known for one in every) < 2 * LEAST:
-        return ""
+    if sum(one.known for one in every) < 2 * LEAST or _ways(every) < ODDS * _known(every):
+        return ""  # of so many states no more pairs of limits have the slowest below them
     names, moves = ("|omega|", "its speed"), np.concatenate([one.least for one in every])
     low = [max(one.at_rest[name] for one in every if one.at_rest) for name in names]
     near = [moves[moves[:, 1 - k] <= low[1 - k], k] for k in range(2)]
@@ -173,7 +176,7 @@ def sleep_law(every: Sequence[Rests], what: str = SLEEPS) -> str:
 
     what: happens to the body.
     """
-    if sum(one.known for one in every) < LEAST:
+    if sum(one.known for one in every) < LEAST or _ways(every) < ODDS * len(UNITS):
         return ""
     found = list[str]()
     for name, unit in UNITS.items():

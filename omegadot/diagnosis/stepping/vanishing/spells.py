@@ -32,27 +32,56 @@ WAYS = 2  # the steps alone are counted, or the state that is given as well
 class Spell:
     """Of a run of this scenario: low and high (WAYS, Q, N), what its limit is not below or above.
 
-    Q: the quantities of `UNITS`.  N: from 1 on, how many steps in a row.  Where the run does not
-    fall asleep, low is zero.  timestep: s.
+    Q: the quantities of `UNITS`.  N: from 1 on, how many steps in a row.  timestep: s.  fell: the
+    step by which it falls asleep; 0 where it does not, and low is zero.  values: (Q, fell + 1) of
+    the given state and after each step, of one that falls asleep.  early: in how many fewer steps
+    it may have fallen asleep.
     """
 
     name: str
     timestep: float
     low: Array
     high: Array
-
-    @property
-    def longest(self) -> float:
-        """s, that a run which falls asleep can have been below a limit before."""
-        return self.timestep * float(np.count_nonzero(np.isfinite(self.low[0, 0])))
+    fell: int
+    values: Array
+    early: int = 0
 
     def below_for(self, times: Array) -> tuple[Array, Array]:
-        """Low and high (1, Q, T) where the steps in a row last these times in s, or just longer."""
-        numbers = np.maximum(np.ceil(times / self.timestep * (1.0 - NEAR)).astype(int), 1)
+        """Low and high (WAYS, Q, T) where the steps in a row last these times in s, or just longer.
+
+        A time that is a whole number of steps takes one more where rounding has it so. Of more
+        steps than are counted nothing is known, but that the run has taken them.
+        """
+        ratio, numbers = times / self.timestep, self._steps_of(times)
+        more = numbers + (np.abs(ratio - numbers) <= NEAR * ratio)
+        (low, high), (lower, higher) = self._ends(numbers), self._ends(more)
+        return np.minimum(low, lower), np.maximum(high, higher)
+
+    def steps_of(self, time: float) -> int:
+        """In a row, that last so many s or just longer, of those that are counted."""
+        return min(int(self._steps_of(np.array(time))), MOST_IN_A_ROW)
+
+    def _steps_of(self, times: Array) -> NDArray[np.intp]:
+        return np.asarray(np.maximum(np.ceil(times / self.timestep * (1.0 - NEAR)), 1), dtype=int)
+
+    def _ends(self, numbers: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Of so many steps in a row."""
         places = np.minimum(numbers, MOST_IN_A_ROW) - 1
-        high = np.where(numbers > MOST_IN_A_ROW, np.inf, self.high[:1, :, places])
-        asleep = np.where(numbers > MOST_IN_A_ROW, np.inf, self.low[:1, :, places])
-        return (asleep if np.any(self.low) else np.zeros_like(high)), high
+        unknown = numbers > MOST_IN_A_ROW
+        given = np.arange(WAYS)[:, None, None]
+        least = np.where(self.fell and numbers > self.fell + given, np.inf, 0.0)
+        low = np.where(unknown, least, self.low[:, :, places])
+        return low, np.where(unknown, np.inf, self.high[:, :, places])
+
+    def steps_between(self, quantity: int, number: int, way: int, low: float, high: float) -> int:
+        """In how many of its steps it would fall asleep by a limit between these two."""
+        row = self.values[quantity : quantity + 1, 1 - way :]
+        if row.shape[1] < number:
+            return 0
+        most = np.max(np.lib.stride_tricks.sliding_window_view(row[0], number), axis=-1)
+        reached = np.minimum.accumulate(most)
+        before = np.append(np.inf, reached[:-1])
+        return int(np.count_nonzero((reached < high) & (before > low) & (reached < before)))
 
 
 def rests_from(run: KeptRun) -> int:
@@ -144,8 +173,9 @@ def _spell(run: KeptRun, stepped: State, asleep: tuple[int, int] | None) -> Spel
             steps = number - way  # by which step so many are in a row
             high[way, :, n] = np.min(most[:, : max(0, begin - steps)], axis=-1, initial=np.inf)
             low[way, :, n] = np.min(most[:, : max(0, end - steps + 1)], axis=-1, initial=np.inf)
-    low = low if asleep else np.zeros_like(low)
-    return Spell(run.name, run.timestep, low, high)
+    if asleep is None:
+        return Spell(run.name, run.timestep, np.zeros_like(low), high, 0, values[:, :0])
+    return Spell(run.name, run.timestep, low, high, end, values[:, : end + 1], end - begin)
 
 
 def _in_a_row(values: Array) -> Iterator[tuple[int, Array]]:
