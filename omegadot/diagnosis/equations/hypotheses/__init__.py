@@ -24,15 +24,13 @@ FIXED: tuple[Hypothesis, ...] = (
     *damping_hypotheses(),
     *torque_hypotheses(),
     *pivot_hypotheses(),
+    *lever_hypotheses(),
     *center_hypotheses(),
     *report_hypotheses(),
     *precision_hypotheses(),
 )
-LEVERS = tuple(lever_hypotheses())
 
 
 def hypotheses(system: System) -> list[Hypothesis]:
     """All of them, for one system; most make no difference to it."""
-    of_inertia = (*inertia_hypotheses(system), *unsymmetric_hypotheses(system))
-    # without a lever an inertia is that about the centre of mass, which is plainer
-    return [*FIXED, *of_inertia, *LEVERS]
+    return [*FIXED, *inertia_hypotheses(system), *unsymmetric_hypotheses(system)]
