@@ -26,6 +26,7 @@ from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
+NOT_ON = ", not on "  # of a cause that other scenarios would show: a rule may say which
 OF_INERTIA: tuple[Rule, ...] = (near_inertia, inverse_series, limited_inertia)
 
 
@@ -105,12 +106,14 @@ class Across:
 
     def of_torque(self, name: str) -> list[str]:
         """What the torque of inverse dynamics leaves out, counts twice or is made of in error."""
-        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            limited = self._rule(limited_inertia, INVERSE)
-            if limited and limited == self._rule(limited_inertia, FORWARD):
-                return [limited]
-        own = f"in inverse dynamics, {limited.removeprefix('in the dynamics, ')}"
-        return [own] if limited else self._inverse.causes(name)
+        own = ""
+        for rule in (limited_inertia, near_inertia):
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                text = self._rule(rule, INVERSE)
+                if text and text == self._rule(rule, FORWARD):
+                    return [text]
+            own = own or (text and f"in inverse dynamics, {text.removeprefix('in the dynamics, ')}")
+        return [own] if own else self._inverse.causes(name)
 
     def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
@@ -135,7 +138,8 @@ class Across:
         if kept:
             return Named(kept)
         found = self._shared(scene, source, PLAIN)
-        if found.text and self._wrong(source) <= found.names:
+        whole = self._wrong(source) <= found.names and NOT_ON not in found.text
+        if found.text and whole:
             return found
         ruled = self._by_rule(source)
         if ruled.text or found.text:
