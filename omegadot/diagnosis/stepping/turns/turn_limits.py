@@ -78,7 +78,9 @@ def limit_of(
     for run, right in sorted(plain, key=lambda one: not one[0].fails):
         found = by_turns(run, by, series, c)
         made, largest = found.sound, np.max(found.turns, axis=0)
-        if run.sweep.every == 1 and not np.all(made | right):
+        # a step of several turns may be by both, on either side of a limit that lies between them
+        mixed = np.ptp(found.turns, axis=0) > 0.0
+        if run.sweep.every == 1 and not np.all(made | right | mixed):
             return None
         wrong.append(largest[made & ~right])
         exact.append(largest[right & ~made])
