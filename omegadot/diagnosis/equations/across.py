@@ -24,6 +24,7 @@ from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_alone
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
+from omegadot.diagnosis.models.attitudes_read import attitudes_read
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 NOT_ON = ", not on "  # of a cause that other scenarios would show: a rule may say which
@@ -46,6 +47,7 @@ class Across:
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
         self._rules: dict[tuple[Rule, str], str] = {}
+        self._read: str | None = None
 
     @property
     def scenes(self) -> dict[str, Scene]:
@@ -62,6 +64,17 @@ class Across:
             self._inverse.add(scene.name, scene.evidence[INVERSE])
         self._carried, self._mistyped = Carried(self._all), Mistyped(self._all)
         self._named, self._known, self._rules = {}, {}, {}
+        self._read = None
+
+    def attitudes_read(self) -> str:
+        """The convention of attitudes that are read back, and reported in runs; "" without one."""
+        if self._read is None:
+            scenes = [*self.scenes.values()]
+            pairs = [one.states for one in scenes if one.states is not None]
+            limits = [pair for one in scenes for pair in one.limits]
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                self._read = attitudes_read(pairs, limits)
+        return self._read
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
