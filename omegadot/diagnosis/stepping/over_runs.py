@@ -29,6 +29,7 @@ from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
 from omegadot.diagnosis.stepping.turns.solved import solved_causes
+from omegadot.diagnosis.stepping.turns.tolerances import tolerance_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 
@@ -84,7 +85,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = found or ([] if solves else either(old_operands(by, chosen)))
         found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
-        found = found or solved_causes(by, runs, declared)
+        found = found or solved_causes(by, runs, declared) or tolerance_causes(by, runs)
         found = found or (either(old_operands(by, chosen)) if solves else [])
         return found or place_causes(by, runs)
 
