@@ -21,6 +21,7 @@ from omegadot.diagnosis.stepping.loads.tared import tared_causes
 from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
+from omegadot.diagnosis.stepping.slips.first_step import first_step_causes
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
@@ -75,7 +76,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = between_steps(by, runs) or substeps_of_runs(integrator, by, chosen)
+        found = between_steps(by, runs) or first_step_causes(by, runs)
+        found = found or substeps_of_runs(integrator, by, chosen)
         found = found or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or load_time_causes(by, runs) or spell_causes(by, runs)
