@@ -151,6 +151,16 @@ def test_a_limit_of_products_is_no_narrower_than_the_bodies_show(
     assert text == f"in the dynamics, products of inertia that are below {limit}, are dropped", text
 
 
+def test_of_two_rules_that_fit_the_limit_is_that_of_either() -> None:
+    """Caught: a limit below the true one, of each product by itself where all must be small."""
+    uneven = np.array(near(0.1, 0.0)) + np.array([[0, 0.002, 0.1], [0.002, 0, 0], [0.1, 0, 0]])
+    cases = (*BODIES[:4], case("uneven", {"torque": BODY_TORQUE}, 1.0, uneven.tolist()))
+    change = without_all(lambda t: float(np.max(np.diag(t))))
+    (text,) = set(causes_over(using(change, (*SPIN, *SOLVE)), cases[:1] + cases[4:]).values())
+    low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
+    assert low < 1.0 < high, text
+
+
 def replaced(tensor: Array) -> Array:
     made = tensor.copy()
     made[2, 2] = made[0, 0]

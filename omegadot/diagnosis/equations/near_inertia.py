@@ -102,9 +102,8 @@ def _text(found: Sequence[_Fit]) -> str:
     """The rule, or what several that nothing decides between share."""
     sizes = list(dict.fromkeys(fit.rule.size for fit in found))
     found = [fit for fit in found if fit.rule.size == sizes[0]]
-    low, high = max(fit.low for fit in found), min(fit.high for fit in found)
-    if not low < high:
-        return ""
+    # whichever it is, its limit is between these
+    low, high = min(fit.low for fit in found), max(fit.high for fit in found)
     whats = {fit.rule.what for fit in found}
     what = whats.pop() if len(whats) == 1 else "moments of inertia"
     moving = {fit.place.moving for fit in found} == {True}
