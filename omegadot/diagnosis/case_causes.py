@@ -21,11 +21,13 @@ from omegadot.diagnosis.experiments.conditioned import UNKNOWN, condition_in
 from omegadot.diagnosis.experiments.subject import Subject
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
-from omegadot.diagnosis.models.misread_state import known_state, misreading_in
+from omegadot.diagnosis.models.attitudes_read import IN_BOTH, IN_RUNS, in_both
+from omegadot.diagnosis.models.misread_state import SET_OR_READ, known_state, misreading_in
 from omegadot.diagnosis.models.wrong_lever import lever_causes
 from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
+from omegadot.diagnosis.run_rules import READ
 from omegadot.diagnosis.stepping.vanishing.kinematics import kinematic_causes, moves_by_cause
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
@@ -100,6 +102,8 @@ class CaseCauses:
             own = None if integrator is None else self._integrators[integrator]
             found = own.sentences() if own is not None and not self._explains_runs else []
             found = found or (self._shared() if self._shared_rows else [])
+            if any(text.startswith(IN_RUNS) for text in found):
+                found = [in_both(text, self._across.attitudes_read()) for text in found]
         return found or defects[-1:]
 
     def subject(self, integrator: str | None, text: str) -> Subject | None:
@@ -208,10 +212,27 @@ class CaseCauses:
         failed = {(row.gate, row.metric) for row in self._shared_rows}
         found = self._of_model(failed) if any(gate == "model" for gate, _ in failed) else []
         found = found or self._of_answers(failed)
+        if not found and failed == {("model", "state")} and self._attitude_alone:
+            found = self._of_attitudes_read()
         if not found and ("model", "state") in failed:
             eps = eps_of(self._answers.precision)
             found = [text for text in (known_state(self._across, self._case, eps),) if text]
         return found
+
+    def _of_attitudes_read(self) -> list[str]:
+        """The convention by which attitudes are read back, and whether samples of runs have it."""
+        text = self._across.attitudes_read()
+        known = ((self._over[name], one.integrator) for name, one in self._integrators.items())
+        rules = [over.runs.rule(READ, how) for over, how in known]
+        shown = any(one is not None and one.statement == f"{IN_RUNS}{text}" for one in rules)
+        return [f"{IN_BOTH}{text}" if shown else f"{text}, {SET_OR_READ}"] if text else []
+
+    @property
+    def _attitude_alone(self) -> bool:
+        """Whether of the state nothing but the attitude, and a pivoted body's place, is off."""
+        follow = {"position", "linear_momentum"} if self._case.system.load.pivot is not None else {}
+        channels = {row.channel for row in self._shared_rows}
+        return "attitude" in channels and channels <= {"attitude", *follow}
 
     def _of_answers(self, failed: set[tuple[str, str]]) -> list[str]:
         """Of forward dynamics, then of inverse dynamics. failed: gates and metrics."""

@@ -329,3 +329,13 @@ def test_an_engine_that_has_hung_is_asked_no_more() -> None:
     judge = ForwardJudge(asked, TOP, EPS, missing())
     assert judge.trial(TOP.system, random_states(TOP, 2, [1])) is None
     assert toy.requests == 3
+
+
+def test_a_lever_that_is_zero_where_it_acts_is_said_as_none() -> None:
+    """Caught: the pivot's distance from the origin, where there is none."""
+    wrong = "in the parallel-axis theorem, the pivot's distance from the origin is taken, not from"
+    text = conditioned(f"{wrong} the centre of mass", "the pivot lies at the origin")
+    due = "in the dynamics, the inertia about the centre of mass is taken, not that about the pivot"
+    assert text == f"{due}, but only where the pivot lies at the origin"
+    kept = conditioned(f"{wrong} the centre of mass", "the body is damped")
+    assert kept == f"{wrong} the centre of mass, but only where the body is damped"

@@ -114,6 +114,41 @@ def test_a_limit_shows_where_the_turns_cross_it_between_samples() -> None:
     assert 0.039 < low < 0.04 <= high
 
 
+def rough(limit: float) -> Exponential:
+    """By ``(1, u/2)`` made unit where the turn is above a limit."""
+
+    def exponential(u: Array) -> Array:
+        if float(np.linalg.norm(u)) <= limit:
+            return exp_quaternion(u)
+        return normalize(np.concatenate(([1.0], 0.5 * u)))
+
+    return exponential
+
+
+@pytest.mark.parametrize("name", ["lie-rk4", "implicit-midpoint"])
+def test_a_limit_is_seen_in_steps_of_several_turns(name: str) -> None:
+    """Caught: silence where the turns inside one step lie on both sides of the limit."""
+    exponential, scheme = rough(0.05), SCHEMES[name]
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        def retract(q: Array, u: Array) -> Array:
+            turned = quaternion_product(q[-4:], exponential(u[-3:]))
+            return np.concatenate((motion.retract(q, u)[:-4], turned))
+
+        return scheme.step(replace(motion, retract=retract), q, v, h)
+
+    runs = [kept(one, step, h, 1) for one in CASES for h in (0.05, 0.03, 0.015)]
+    by = SchemeOf(scheme, "com-world")
+    runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
+    own = Integrator("own", name, scheme.orders)
+    (text,) = causes_over_runs(own, runs)
+    assert "ends before x^2/8 in cos(x/2) and x^2/48 in sin(x/2)/x, where the turn is" in text
+    low, high = (float(one) for one in text.split(" above a limit between ")[1].split()[:3:2])
+    assert low <= 0.05 <= high
+
+
 def test_turns_that_are_off_by_no_series_are_not_named() -> None:
     assert causes(lambda u: exp_quaternion((1.0 + 0.01 * np.sin(40.0 * u[0])) * u)) == []
 

@@ -119,8 +119,8 @@ BETWEEN = "a limit between 0.069 and 0.2 %"
             without_small,
             SPIN,
             BODIES,
-            "in the gyroscopic term, products of inertia that are below a limit between 9.5 "
-            "and 15 % of the largest number on its diagonal are dropped",
+            "in the gyroscopic term, products of inertia that are below a limit, between 9.5 "
+            "and 15 % of the largest number on its diagonal here, are dropped",
         ),
     ],
 )
@@ -131,6 +131,34 @@ def test_numbers_that_are_nearly_equal_or_nothing_are_named_with_their_limit(
     causes = causes_over(using(change, parts), cases)
     assert causes
     assert all(one.startswith(text) for one in causes.values()), causes
+
+
+def without_all(of: Callable[[Array], float]) -> Change:
+    def change(tensor: Array) -> Array:
+        small = np.max(np.abs(tensor - np.diag(np.diag(tensor)))) < 0.01 * of(tensor)
+        return np.diag(np.diag(tensor)) if small else tensor
+
+    return change
+
+
+@pytest.mark.parametrize("of", [lambda t: float(np.max(np.diag(t))), lambda t: float(np.trace(t))])
+def test_a_limit_of_products_is_no_narrower_than_the_bodies_show(
+    of: Callable[[Array], float],
+) -> None:
+    """Caught: 1e-3 of the trace, which fits every body as well as any limit in between."""
+    (text,) = set(causes_over(using(without_all(of), (*SPIN, *SOLVE)), BODIES[:4]).values())
+    limit = "a limit, between 0.14 and 9.6 % of the largest number on its diagonal here"
+    assert text == f"in the dynamics, products of inertia that are below {limit}, are dropped", text
+
+
+def test_of_two_rules_that_fit_the_limit_is_that_of_either() -> None:
+    """Caught: a limit below the true one, of each product by itself where all must be small."""
+    uneven = np.array(near(0.1, 0.0)) + np.array([[0, 0.002, 0.1], [0.002, 0, 0], [0.1, 0, 0]])
+    cases = (*BODIES[:4], case("uneven", {"torque": BODY_TORQUE}, 1.0, uneven.tolist()))
+    change = without_all(lambda t: float(np.max(np.diag(t))))
+    (text,) = set(causes_over(using(change, (*SPIN, *SOLVE)), cases[:1] + cases[4:]).values())
+    low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
+    assert low < 1.0 < high, text
 
 
 def replaced(tensor: Array) -> Array:

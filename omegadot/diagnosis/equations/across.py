@@ -24,8 +24,10 @@ from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_alone
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
+from omegadot.diagnosis.models.attitudes_read import attitudes_read
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
+NOT_ON = ", not on "  # of a cause that other scenarios would show: a rule may say which
 OF_INERTIA: tuple[Rule, ...] = (near_inertia, inverse_series, limited_inertia)
 
 
@@ -45,6 +47,7 @@ class Across:
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
         self._rules: dict[tuple[Rule, str], str] = {}
+        self._read: str | None = None
 
     @property
     def scenes(self) -> dict[str, Scene]:
@@ -61,6 +64,17 @@ class Across:
             self._inverse.add(scene.name, scene.evidence[INVERSE])
         self._carried, self._mistyped = Carried(self._all), Mistyped(self._all)
         self._named, self._known, self._rules = {}, {}, {}
+        self._read = None
+
+    def attitudes_read(self) -> str:
+        """The convention of attitudes that are read back, and reported in runs; "" without one."""
+        if self._read is None:
+            scenes = [*self.scenes.values()]
+            pairs = [one.states for one in scenes if one.states is not None]
+            limits = [pair for one in scenes for pair in one.limits]
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                self._read = attitudes_read(pairs, limits)
+        return self._read
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -105,12 +119,14 @@ class Across:
 
     def of_torque(self, name: str) -> list[str]:
         """What the torque of inverse dynamics leaves out, counts twice or is made of in error."""
-        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            limited = self._rule(limited_inertia, INVERSE)
-            if limited and limited == self._rule(limited_inertia, FORWARD):
-                return [limited]
-        own = f"in inverse dynamics, {limited.removeprefix('in the dynamics, ')}"
-        return [own] if limited else self._inverse.causes(name)
+        own = ""
+        for rule in (limited_inertia, near_inertia):
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                text = self._rule(rule, INVERSE)
+                if text and text == self._rule(rule, FORWARD):
+                    return [text]
+            own = own or (text and f"in inverse dynamics, {text.removeprefix('in the dynamics, ')}")
+        return [own] if own else self._inverse.causes(name)
 
     def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
@@ -135,7 +151,8 @@ class Across:
         if kept:
             return Named(kept)
         found = self._shared(scene, source, PLAIN)
-        if found.text and self._wrong(source) <= found.names:
+        whole = self._wrong(source) <= found.names and NOT_ON not in found.text
+        if found.text and whole:
             return found
         ruled = self._by_rule(source)
         if ruled.text or found.text:

@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families import Family, fit
 from omegadot.diagnosis.equations.formula import Formula, OtherInertia, Together
 from omegadot.diagnosis.equations.hypotheses import Hypothesis, wrong_form
-from omegadot.diagnosis.equations.operators import Changed
+from omegadot.diagnosis.equations.operators import Apart, Changed
 from omegadot.diagnosis.equations.readings import Reading
 from omegadot.diagnosis.equations.terms import Terms
 from omegadot.diagnosis.wording.digits import vector
@@ -34,7 +34,7 @@ class Candidate:
     family: Family | None = None
     numbers: Array | None = None
     reading: Reading | None = None
-    terms: Terms | Changed | Formula | OtherInertia | Together | None = None
+    terms: Terms | Changed | Apart | Formula | OtherInertia | Together | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -65,7 +65,8 @@ class Candidate:
     @property
     def by_mass(self) -> bool:
         """Whether it holds by a factor of the mass, which many a number is on one body."""
-        return any(BY_MASS.search(one.text) for one in self.fixed)
+        apart = isinstance(self.terms, Apart) and bool(BY_MASS.search(self.terms.name))
+        return apart or any(BY_MASS.search(one.text) for one in self.fixed)
 
     @property
     def parts(self) -> set[str]:

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import form_of
-from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.inertia_places import PLACES, Place
+from omegadot.diagnosis.equations.wrong_inverse import is_of_torque
 from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, NearRule
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.system import Array
@@ -85,28 +86,39 @@ def _fitting(evidence: Evidence, place: Place, rule: NearRule, tried: Array) -> 
     tensors = [rule.tensor(requested, float(limit)) for limit in tried]
     distinct = list({t.tobytes(): t for t in tensors}.values())
     forms = [place.form(right, system, t) for t in distinct]
-    fits = {distinct[k].tobytes() for k in evidence.fitting(forms)}
+    fits = {distinct[k].tobytes() for k in _of(evidence, forms)}
     return np.array([t.tobytes() in fits for t in tensors], dtype=bool)
+
+
+def _of(evidence: Evidence, forms: Sequence[Form | None]) -> list[int]:
+    """The numbers of the forms that are the engine's equation, or its inverse dynamics."""
+    if evidence.source != INVERSE:
+        return evidence.fitting(forms)
+    made = ((k, form) for k, form in enumerate(forms) if form is not None)
+    return [k for k, form in made if np.all(is_of_torque(evidence, form))]
 
 
 def _text(found: Sequence[_Fit]) -> str:
     """The rule, or what several that nothing decides between share."""
-    low, high = max(fit.low for fit in found), min(fit.high for fit in found)
-    if not low < high:
-        return ""
+    sizes = list(dict.fromkeys(fit.rule.size for fit in found))
+    found = [fit for fit in found if fit.rule.size == sizes[0]]
+    # whichever it is, its limit is between these
+    low, high = min(fit.low for fit in found), max(fit.high for fit in found)
     whats = {fit.rule.what for fit in found}
     what = whats.pop() if len(whats) == 1 else "moments of inertia"
     moving = {fit.place.moving for fit in found} == {True}
     about = " about the pivot" * moving
     dones = {fit.rule.done for fit in found}
     done = dones.pop() if len(dones) == 1 else found[0].rule.done.partition(":")[0]
-    small = found[0].rule in SMALL_RULES
-    if np.isfinite(high):
-        way = "are below" if small else "differ by less than"
-        limit = f"{way} a limit between {limits(*_rounded(low, high), '%')}"
-    else:  # nothing is seen of a limit
+    small, here = found[0].rule in SMALL_RULES, ""
+    if not np.isfinite(high):  # nothing is seen of a limit
         limit = f"{'are' if small else 'differ by'} {written(100.0 * low, 3)} % or less"
-    of = " of the largest number on its diagonal" * small
+    else:
+        way = "are below" if small else "differ by less than"
+        # of which size it is a part may not be seen: then it is what it comes to in this run
+        apart, here = (",", " here,") if len(sizes) > 1 else ("", "")
+        limit = f"{way} a limit{apart} between {limits(*_rounded(low, high), '%')}"
+    of = f" of {sizes[0]}{here}" * small
     return f"{found[0].place.text}, {what}{about} that {limit}{of} are {done}"
 
 

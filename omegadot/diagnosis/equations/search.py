@@ -15,7 +15,7 @@ from omegadot.diagnosis.equations.families import (
     Family,
     fit,
 )
-from omegadot.diagnosis.equations.operators import changed_vectors
+from omegadot.diagnosis.equations.operators import changed_vectors, solved_apart
 from omegadot.diagnosis.equations.readings import READINGS
 from omegadot.diagnosis.equations.terms import FEW, MORE, MOST, Terms
 from omegadot.diagnosis.equations.tried import Tried, differs
@@ -34,7 +34,7 @@ def levels(
     tried = tried or Tried(evidence)
     single = tried.fitting()
     likely = [one for one in single if not one.fixed[0].unlikely]
-    yield likely + _readings(evidence)
+    yield likely + _readings(evidence) + _apart(evidence, together=True)
     yield _fitted(evidence, ONE_NUMBER) + _with_terms(evidence, FEW)
     yield _fitted(evidence, LEAST) + _changed(evidence)
     yield _with_terms(evidence, MORE)
@@ -75,4 +75,9 @@ def _fitted(evidence: Evidence, families: Sequence[Family]) -> list[Candidate]:
 
 def _changed(evidence: Evidence) -> list[Candidate]:
     found = changed_vectors(evidence, steps=evidence.source == STEPS)
-    return [Candidate(terms=one, numbers=p) for one, p in found]
+    return _apart(evidence) + [Candidate(terms=one, numbers=p) for one, p in found]
+
+
+def _apart(evidence: Evidence, together: bool = False) -> list[Candidate]:
+    """One torque that is solved for by itself; together: all loads, of which one alone is less."""
+    return [Candidate(terms=one, numbers=p) for one, p in solved_apart(evidence, together)]

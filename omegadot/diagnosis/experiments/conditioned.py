@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from omegadot.diagnosis.wording.no_lever import no_lever
+
 UNKNOWN = "none is known"
 END = r"(?= \(\S+; other numbers|; |$)"
 # What is said of some scenarios where no condition is known, or by what scenarios alone show.
@@ -23,7 +25,7 @@ def conditioned(text: str, condition: str) -> str:
         return text
     if text.startswith(UNKNOWN):
         return f"{ALONE.sub('', text)}; it is so only where {condition}"
-    plain = OF_SOME.sub("", text)
+    plain = no_lever(OF_SOME.sub("", text), condition)
     either = "either " in plain or "; " in plain
     return (
         f"{plain}; it is so only where {condition}"

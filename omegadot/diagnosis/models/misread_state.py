@@ -32,6 +32,7 @@ from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.system import Array, State, System
 
 SIGN = "without its sign"
+SET_OR_READ = "as a state is set or read back"
 NEGATIVE = "the scalar part of the quaternion that is set is negative"
 PLACE = ("position", "linear_velocity")
 TURNS = ("orientation", "angular_velocity")
@@ -194,7 +195,7 @@ def _attitude(every: Sequence[_Round]) -> str:
         text = attitude_misread(*_attitudes(shown), every[0].eps)
         if text:
             fits = [any(one is other for other in shown) for one in every]
-            return _where(f"{text}, as a state is set or read back", every, fits)
+            return _where(f"{text}, {SET_OR_READ}", every, fits)
     return ""
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -25,13 +26,15 @@ class NearRule:
     """What is done to a tensor below a limit, which is relative.
 
     what: the numbers that are changed, as text.  done: what becomes of them, as text.  ratios: the
-    limits at which the result may change, (k,).  tensor: the result at a limit.
+    limits at which the result may change, (k,).  tensor: the result at a limit.  size: what the
+    limit is a part of, where it is none of these numbers.
     """
 
     what: str
     done: str
     ratios: Callable[[Array], Array]
     tensor: Callable[[Array, float], Array]
+    size: str = ""
 
 
 def _ratio(a: float, b: float) -> float:
@@ -78,28 +81,37 @@ def _principal_rule(text: str, way: Callable[[float, float], float]) -> NearRule
     return NearRule("principal moments", f"taken as equal: {text}", ratios, tensor)
 
 
-def _products(requested: Array) -> Array:
-    """Each product over the largest number on the diagonal."""
-    largest = float(np.max(np.abs(np.diag(requested))))
-    return np.abs(requested[np.triu_indices(3, 1)]) / largest
+SIZES: dict[str, Callable[[Array], float]] = {
+    "the largest number on its diagonal": lambda t: float(np.max(np.abs(np.diag(t)))),
+    "its trace": lambda t: abs(float(np.trace(t))),
+}
 
 
-def _without_small(requested: Array, limit: float) -> Array:
-    largest = float(np.max(np.abs(np.diag(requested))))
-    kept = (np.abs(requested) >= limit * largest) | np.eye(3, dtype=bool)
+def _products(size: Callable[[Array], float], requested: Array) -> Array:
+    """Each product over the size."""
+    return np.abs(requested[np.triu_indices(3, 1)]) / size(requested)
+
+
+def _without_small(size: Callable[[Array], float], requested: Array, limit: float) -> Array:
+    kept = (np.abs(requested) >= limit * size(requested)) | np.eye(3, dtype=bool)
     return np.where(kept, requested, 0.0)
 
 
-def _without_all(requested: Array, limit: float) -> Array:
-    small = bool(np.max(_products(requested)) < limit)
+def _without_all(size: Callable[[Array], float], requested: Array, limit: float) -> Array:
+    small = bool(np.max(_products(size, requested)) < limit)
     return np.diag(np.diag(requested)) if small else requested
+
+
+def _small_rules() -> Iterator[NearRule]:
+    done = {"each by itself": _without_small, "where all are so small": _without_all}
+    for text, size in SIZES.items():
+        for how, change in done.items():
+            ways = partial(_products, size), partial(change, size)
+            yield NearRule("products of inertia", f"dropped: {how}", *ways, text)
 
 
 NEAR_RULES = (
     *(_diagonal_rule(*way) for way in WAYS.values()),
     *(_principal_rule(*WAYS[name]) for name in ("mean", "larger", "smaller")),
 )
-SMALL_RULES = (
-    NearRule("products of inertia", "dropped: each by itself", _products, _without_small),
-    NearRule("products of inertia", "dropped: where all are so small", _products, _without_all),
-)
+SMALL_RULES = tuple(_small_rules())

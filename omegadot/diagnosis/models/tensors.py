@@ -14,6 +14,7 @@ from omegadot.reference_impl.system import Array, Body, Load, System
 DECIMALS, SMALL, DIGITS = range(1, 8), range(1, 7), range(2, 10)
 SPHERE = "the inertia is that of a sphere with the same trace"
 UNIT = "the inertia is the unit matrix"
+DROPPED = "what is smaller than"
 
 
 def _diagonal(matrix: Array) -> Array:
@@ -90,7 +91,7 @@ def _tensors(system: System, mass: float) -> dict[str, Array]:
         found[f"the inertia is rounded to {digits} decimals"] = np.round(tensor, digits)
     for power in SMALL:
         kept = np.abs(tensor) >= 10.0**-power * np.trace(tensor)
-        text = f"what is smaller than 1e-{power} of the trace is dropped from the inertia"
+        text = f"{DROPPED} 1e-{power} of the trace is dropped from the inertia"
         found[text] = np.where(kept, tensor, 0.0)
     for digits in DIGITS:
         found[f"the inertia is rounded to {digits} digits"] = _of_digits(tensor, digits)

@@ -21,6 +21,7 @@ from omegadot.diagnosis.stepping.loads.tared import tared_causes
 from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
+from omegadot.diagnosis.stepping.slips.first_step import first_step_causes
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
@@ -30,6 +31,7 @@ from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
 from omegadot.diagnosis.stepping.turns.solved import solved_causes
+from omegadot.diagnosis.stepping.turns.tolerances import tolerance_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 
@@ -75,7 +77,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = switched(by, runs) or between_steps(by, runs)
+        found = switched(by, runs) or between_steps(by, runs) or first_step_causes(by, runs)
         found = found or substeps_of_runs(integrator, by, chosen)
         found = found or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
@@ -86,7 +88,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = found or ([] if solves else either(old_operands(by, chosen)))
         found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
-        found = found or solved_causes(by, runs, declared)
+        found = found or solved_causes(by, runs, declared) or tolerance_causes(by, runs)
         found = found or (either(old_operands(by, chosen)) if solves else [])
         return found or place_causes(by, runs)
 

@@ -17,7 +17,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_form,
     own_inertia,
 )
-from omegadot.diagnosis.models.tensors import other_tensors
+from omegadot.diagnosis.models.tensors import DROPPED, other_tensors
 from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.system import Array, System
 
@@ -59,6 +59,8 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
         text = TWICE if name.startswith("the inertia is about the pivot") else name
         if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, own):
             continue
+        if name.startswith(DROPPED):
+            continue  # a limit of it is shown by several tensors: `near_inertia`
         yield of_body(
             f"in the dynamics, {text}",
             f"inertia:{text}",

@@ -14,6 +14,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.models.attitude_misread import attitude_misread
+from omegadot.diagnosis.models.attitudes_read import IN_RUNS
 from omegadot.diagnosis.stepping.ends.start_rules import (
     KNOWN_TO,
     convention_of_attitudes,
@@ -59,7 +60,7 @@ def samples_read(
             if not same_start(one, "orientation", one.states.orientation).all()
         }
         names = _held(text, by, jumping, given, [run for run in kept if run.name in given])
-    return ReadOut(f"in the samples of a run, {text}", frozenset(names)) if names else None
+    return ReadOut(f"{IN_RUNS}{text}", frozenset(names)) if names else None
 
 
 def _held(

@@ -55,8 +55,18 @@ def _causes_in(by: SchemeOf, runs: Sequence[KeptRun], every: Sequence[Series]) -
             c = 0.0 if series.wrong is None else _fitted(by, wrong[:FITTED], series)
             limit = None if c is None else limit_of(by, plain, series, c)
             if c is not None and limit is not None and series_named(series, c):
+                if not limit and _too_short(by, wrong, every):
+                    return []  # a scheme of its own, however its numbers are read
                 return [f"the turn of a step is by a series {series_named(series, c)}{limit}"]
     return []
+
+
+def _too_short(
+    by: SchemeOf, wrong: Sequence[tuple[KeptRun, NDArray[np.bool_]]], every: Sequence[Series]
+) -> bool:
+    """Whether a series of right numbers makes every interval of the runs that are wrong."""
+    plain = (one for one in every if one.wrong is None)
+    return any(all(np.all(by_turns(run, by, one).sound) for run, _ in wrong) for one in plain)
 
 
 def _last_turns(run: KeptRun) -> Array:

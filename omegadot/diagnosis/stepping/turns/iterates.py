@@ -42,7 +42,7 @@ def iterates(run: KeptRun, coordinates: Coordinates, way: str, kind: str) -> Ite
     q, v = to_coordinates(run.system, run.state[:-1], coordinates)
     q, h = motion.normalize(q), run.sweep.timestep
     every, changes, last = list[dict[str, Array]](), [], np.full_like(v, np.inf)
-    for mean in _means(motion, q, v, h, kind):
+    for mean in means_of(motion, q, v, h, kind):
         ends = motion.retract(q, motion.cayley(h * mean)), 2.0 * mean - v
         every.append(run.apart(from_coordinates(run.system, *ends, coordinates)))
         changes.append(norm(2.0 * (mean - last)[..., motion.spin]))
@@ -62,7 +62,7 @@ def iterates(run: KeptRun, coordinates: Coordinates, way: str, kind: str) -> Ite
     return Iterates(np.stack(matches), np.stack(changes), rate)
 
 
-def _means(motion: Motion, q: Array, v: Array, h: float, kind: str) -> Iterator[Array]:
+def means_of(motion: Motion, q: Array, v: Array, h: float | Array, kind: str) -> Iterator[Array]:
     """The mean velocities of a step, guess by guess."""
 
     def push(mean: Array) -> Array:
@@ -71,7 +71,9 @@ def _means(motion: Motion, q: Array, v: Array, h: float, kind: str) -> Iterator[
 
     first, jacobian = acceleration_and_jacobian(motion, q, v)
     solve = solver_of_one_minus(per_matrix(0.5 * h) * jacobian)
-    mean = v + 0.5 * h * first if kind.endswith(" ") else v
+    mean = v
+    if kind.endswith(" "):
+        mean = v + (solve(0.5 * h * first) if kind.startswith("simplified") else 0.5 * h * first)
     for _ in range(MOST + 1):
         yield mean
         if kind.startswith("fixed"):

@@ -25,6 +25,7 @@ KINDS = {
     "Newton": "from the velocities of its start",
     "Newton ": "from the explicit step",
     "simplified Newton": "from the velocities of its start",
+    "simplified Newton ": "from the linearised step",
 }
 
 

@@ -24,7 +24,8 @@ from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array
 
 LEAST = 3  # intervals that show it, and scenarios
-MOST_LIMITS = 64  # that are tried in one run
+MOST_LIMITS = 128  # that are tried in one run
+SAME = 1e-5  # relative: turns of iterations that end at one
 SIDES = ("below", "above")
 
 
@@ -78,7 +79,9 @@ def limit_of(
     for run, right in sorted(plain, key=lambda one: not one[0].fails):
         found = by_turns(run, by, series, c)
         made, largest = found.sound, np.max(found.turns, axis=0)
-        if run.sweep.every == 1 and not np.all(made | right):
+        # a step of several turns may be by both, on either side of a limit that lies between them
+        mixed = np.ptp(found.turns, axis=0) > 0.0
+        if run.sweep.every == 1 and not np.all(made | right | mixed):
             return None
         wrong.append(largest[made & ~right])
         exact.append(largest[right & ~made])
@@ -121,7 +124,8 @@ def _sorting(
     """The bounds, in rad, of limits with which every interval of all runs is made."""
 
     def inside(turns: Array) -> Array:
-        return np.unique(turns[(turns > low) & (turns < high)])
+        found = np.unique(turns[(turns > low) & (turns < high)])
+        return found[np.append(True, np.diff(found) > SAME * found[1:])] if len(found) else found
 
     def made(run: KeptRun, limit: float) -> bool:
         return bool(np.all(by_turns(run, by, series, c, limit, side).sound))

@@ -72,6 +72,8 @@ def series_named(series: Series, c: float) -> str:
         return ""
     sign = "-" if c * right < 0.0 else ""
     if abs(c) < WHOLE * abs(right):
+        if series.wrong + 1 == (series.sine if series.of_sine else series.cosine):
+            return ""  # it is the series that ends before it
         return f"without {name} in {what}"
     whole = np.round(1.0 / abs(c))
     exact = abs(abs(c) * whole - 1.0) < WHOLE
