@@ -36,8 +36,8 @@ class OverScenarios:
     up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
     on as much too fast, or too slowly, as first steps do.  asleep: what shows that bodies are put
     to sleep, or left as they are.  places: causes in every step, with where they act.  substeps: in
-    which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be wrong
-    that are sound until then.
+    which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
+    wrong that are sound until then.
     """
 
     runs: KeptRuns = field(default_factory=KeptRuns)
