@@ -10,10 +10,13 @@ import pytest
 from test_causes import causes_over
 from wrong_equations import BODY_TORQUE, GRAVITY, TENSOR, case
 
+from omegadot.diagnosis.models.principal_axes import right_handed
+from omegadot.gates.case import Case
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
+from omegadot.reference_impl.rotations import exp_quaternion, rotation_matrix
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -225,3 +228,42 @@ def test_one_body_shows_no_limit() -> None:
     change = merged(1e-3, max)
     (text,) = causes_over(using(change, SPIN), alone).values()
     assert "limit" not in text
+
+
+def put_together(signs: Callable[[Array], Array]) -> Change:
+    """V^T D V in place of V D V^T, of the axes by size with these signs."""
+
+    def change(tensor: Array) -> Array:
+        moments, axes = np.linalg.eigh(tensor)
+        turn = signs(axes)
+        return np.asarray(turn.T @ (moments[:, None] * turn))
+
+    return change
+
+
+def nearest(tensor: Array) -> Array:
+    """The same, of the axes that are turned the least from those of the body."""
+    moments, axes = np.linalg.eigh(tensor)
+    order = np.argmax(np.abs(axes), axis=1)
+    turn = axes[:, order] * np.sign(np.diag(axes[:, order]))
+    return np.asarray(turn.T @ (moments[order][:, None] * turn))
+
+
+def tilted(k: int, about: list[float]) -> Case:
+    turn = rotation_matrix(exp_quaternion(np.array(about)))
+    tensor = (turn @ np.diag([1.0 + 0.3 * k, 1.9, 2.3]) @ turn.T).tolist()
+    return case(f"tilted-{k}", {"torque": BODY_TORQUE}, 1.0, tensor)
+
+
+TILTED = tuple(
+    tilted(k, about)
+    for k, about in enumerate(([0.3, -0.2, 0.4], [-0.4, 0.3, 0.1], [0.2, 0.5, -0.3]))
+)
+
+
+@pytest.mark.parametrize("change", [nearest, put_together(right_handed)])
+def test_principal_axes_are_put_together_the_wrong_way_round(change: Change) -> None:
+    """Caught: one order and one sign of axes for all bodies, where an engine chooses for each."""
+    found = causes_over(using(change, (*SPIN, *SOLVE)), TILTED)
+    transposed = "in the dynamics, the rotation of the inertia's principal axes looks transposed"
+    assert {text.rstrip() for text in found.values()} == {transposed}

@@ -8,6 +8,7 @@ from itertools import permutations, product
 
 import numpy as np
 
+from omegadot.diagnosis.models.principal_axes import conventions
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, Load, System
 
@@ -15,6 +16,7 @@ DECIMALS, SMALL, DIGITS = range(1, 8), range(1, 7), range(2, 10)
 SPHERE = "the inertia is that of a sphere with the same trace"
 UNIT = "the inertia is the unit matrix"
 DROPPED = "what is smaller than"
+TRANSPOSED = "the rotation of the inertia's principal axes looks transposed"
 
 
 def _diagonal(matrix: Array) -> Array:
@@ -81,7 +83,9 @@ def _other_tensors(*numbers: bytes) -> dict[str, Array]:
 def _tensors(system: System, mass: float) -> dict[str, Array]:
     tensor, body = np.asarray(system.body.inertia), system.body
     found = dict[str, Array]()
-    for text, other in (*mistaken_inertias(body, system), *product_mistakes(tensor)):
+    # order and signs of principal axes may be another one of these for every tensor
+    chosen = ((TRANSPOSED, turn.T @ np.diag(m) @ turn) for m, turn in conventions(tensor))
+    for text, other in (*mistaken_inertias(body, system), *product_mistakes(tensor), *chosen):
         while text in found:
             text += " "
         found[text] = other
@@ -148,5 +152,4 @@ def mistaken_inertias(body: Body, system: System) -> Iterator[tuple[str, Array]]
     # R^T D R for R D R^T, whatever order and signs the axes are kept in; those of -R are the same
     for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=2)):
         turn = axes[:, order] * np.array((1.0, *signs))
-        text = "the rotation of the inertia's principal axes looks transposed"
-        yield text, turn.T @ np.diag(moments[list(order)]) @ turn
+        yield TRANSPOSED, turn.T @ np.diag(moments[list(order)]) @ turn

@@ -22,6 +22,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     over_diagonal,
     own_inertia,
 )
+from omegadot.diagnosis.models.principal_axes import SIGNS, near_the_bodys
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, Load, System
 
@@ -168,24 +169,6 @@ def _loads_scaled(form: Form, k: float) -> dict[str, Any]:
     return {name: k * getattr(form, name) for name in parts}
 
 
-def _right_handed(axes: Array) -> Array:
-    return np.asarray(axes * [1.0, 1.0, np.linalg.det(axes)])
-
-
-def _mostly_positive(axes: Array) -> Array:
-    largest = np.argmax(np.abs(axes), axis=0)
-    return np.asarray(axes * np.sign(axes[largest, range(3)]))
-
-
-# Neither signs nor order of principal axes are given by the tensor.
-SIGNS: tuple[Callable[[Array], Array], ...] = (
-    lambda axes: axes,
-    _right_handed,
-    _mostly_positive,
-    lambda axes: _right_handed(_mostly_positive(axes)),
-)
-
-
 def _along_principal_axes(
     of: Callable[[System], Array],
     signs: Callable[[Array], Array],
@@ -198,6 +181,6 @@ def _along_principal_axes(
     if nearest and not np.any(tensor - diagonal(tensor)):
         return system  # these are the body's axes
     axes = np.linalg.eigh(tensor)[1]
-    axes = signs(axes[:, np.argmax(np.abs(axes), axis=1)] if nearest else axes)
+    axes = signs(axes[:, near_the_bodys(axes)] if nearest else axes)
     turned = (axes.T if back else axes) @ system.load.torque_body
     return replace(system, load=replace(system.load, torque_body=turned))
