@@ -114,6 +114,26 @@ def test_a_limit_shows_where_the_turns_cross_it_between_samples() -> None:
     assert 0.039 < low < 0.04 <= high
 
 
+def completed(limit: float) -> Exponential:
+    """By the vector ``u/2`` and the scalar that makes it unit where the turn is below a limit."""
+
+    def exponential(u: Array) -> Array:
+        if float(np.linalg.norm(u)) >= limit:
+            return exp_quaternion(u)
+        return np.concatenate(([np.sqrt(1.0 - u @ u / 4)], 0.5 * u))
+
+    return exponential
+
+
+def test_a_vector_part_that_its_scalar_part_makes_unit_is_named() -> None:
+    """Caught: a turn by ``2 asin(x/2)``, taken for one of another series."""
+    (text,) = causes(completed(0.1))
+    assert (
+        "ends before x^2/48 in sin(x/2)/x, with the scalar part that makes it a unit one, where "
+        "the turn is below a limit"
+    ) in text
+
+
 def rough(limit: float) -> Exponential:
     """By ``(1, u/2)`` made unit where the turn is above a limit."""
 

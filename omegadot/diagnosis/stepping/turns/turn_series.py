@@ -21,13 +21,15 @@ SINE = {"1/2": (1 / 2, 0), "x^2/48": (-1 / 48, 2), "x^4/3840": (1 / 3840, 4)}
 class Series:
     """How many terms C and S have, none where it is exact, and which of S's or C's is wrong.
 
-    wrong: its place in the series; of_sine: in which.
+    wrong: its place in the series; of_sine: in which.  completed: C is what makes the quaternion of
+    unit length with this S, ``sqrt(1 - (S x)^2)``.
     """
 
     cosine: int | None
     sine: int | None
     of_sine: bool = True
     wrong: int | None = None
+    completed: bool = False
 
     def unit(self, u: Array, c: float) -> Array:
         """The quaternion, with c in place of the wrong number."""
@@ -42,6 +44,8 @@ class Series:
                 wrong = place == self.wrong and of_sine is self.of_sine
                 own = own + (c if wrong else value) * x**power
             cosine, sine = (cosine, own) if of_sine else (own, sine)
+        if self.completed:
+            cosine = np.sqrt(np.maximum(1.0 - (sine * x) ** 2, 0.0))
         return normalize(np.concatenate((cosine, sine * u), axis=-1))
 
 
@@ -49,6 +53,7 @@ def series_to_try() -> list[Series]:
     """Those with one wrong number, and those that end too early with every number right."""
     counts = [(c, s) for c in (0, 1, 2, None) for s in (1, 2, 3, None)]
     found = [Series(c, s) for c, s in counts if c is not None or s is not None]
+    found += [Series(None, s, completed=True) for s in (1, 2)]
     for c, s in counts:
         found += [Series(c, s, True, k) for k in range(1, s or 0)]
         found += [Series(c, s, False, k) for k in range(c or 0)]
@@ -65,7 +70,8 @@ def series_named(series: Series, c: float) -> str:
         ):
             if count is not None and count < len(own):
                 ends.append(f"{[*own][count]} in {what}")
-        return f"that ends before {' and '.join(ends)}" if ends else ""
+        text = f"that ends before {' and '.join(ends)}" if ends else ""
+        return f"{text}, with the scalar part that makes it a unit one" * series.completed or text
     own, what = (SINE, "sin(x/2)/x") if series.of_sine else (COSINE, "cos(x/2)")
     name, (right, power) = [*own.items()][series.wrong]
     if abs(c / right - 1.0) < WHOLE:
