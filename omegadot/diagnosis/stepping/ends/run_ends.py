@@ -1,4 +1,4 @@
-"""Runs whose last sample is the state of another step than its time, all others being right."""
+"""Runs whose last sample is the state of another step, or by another scheme; others are right."""
 
 from __future__ import annotations
 
@@ -21,11 +21,14 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Sweep
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.rotations import normalize, rotation_between
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes.scheme import Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
 MISSING = "the last step is missing: the end is the state one step before"
 EVERY = "the last sample of every run is the state {} its time"
+OTHER = "the last step of every run is by {}, not by {}"
 SHORT = "the last sample, after an interval shorter than the others, is the state {} its time"
 MOST_SHIFT = 3  # steps
 COUNTS = ("", "one step", "two steps", "three steps")
@@ -81,7 +84,10 @@ def run_end(
 def other_ends(
     integrator: Integrator, ends: Sequence[RunEnd], kept: Sequence[KeptRun]
 ) -> Ends | None:
-    """Which other step the last sample of all runs is of; None where one is not, or none is."""
+    """Which other step the last sample of all runs is of, or by which other scheme the last step.
+
+    None where one is not, or where none is.
+    """
     with np.errstate(all="ignore"):
         by = scheme_of(integrator, kept) if any(one.fails for one in ends) else None
         if by is None:
@@ -93,7 +99,15 @@ def other_ends(
                 if shown:
                     names = frozenset(shown - _wrong_before(kept, by))
                     return Ends(statement_of(shift, short), names)
-    return None
+        others = [one for one in SCHEMES.values() if by.coordinates in one.coordinates]
+        shows = {one.name: _shown(ends, by, 0, False, one) for one in others if one != by.scheme}
+        shows = {name: shown for name, shown in shows.items() if shown}
+        # a variant that is another at longer turns alone is not what these show
+        plain = [n for n in shows if not any(n.startswith(f"{other}-") for other in shows)]
+        if not plain:
+            return None
+        text = OTHER.format(" or ".join(plain), by.scheme.name)
+        return Ends(text, frozenset(shows[plain[0]] - _wrong_before(kept, by)))
 
 
 def statement_of(shift: int, short: bool) -> str:
@@ -104,13 +118,15 @@ def statement_of(shift: int, short: bool) -> str:
     return (SHORT if short else EVERY).format(off)
 
 
-def _shown(ends: Sequence[RunEnd], by: SchemeOf, shift: int, short: bool) -> set[str]:
-    """The scenarios that show it; none where one run contradicts it."""
+def _shown(
+    ends: Sequence[RunEnd], by: SchemeOf, shift: int, short: bool, last: Scheme | None = None
+) -> set[str]:
+    """The scenarios that show it; none where one run contradicts it. last: of the last step."""
     names, count = set[str](), 0
     # of the runs that fail those of few steps rule most out
     for end in sorted(ends, key=lambda one: (not one.fails, one.steps)):
         moved = end.is_short or not short
-        if not _is_after(end, by, end.steps + shift * moved):
+        if not _is_after(end, by, end.steps + shift * moved, last):
             return set()
         if moved and not _is_after(end, by, end.steps):
             names.add(end.name)
@@ -118,16 +134,19 @@ def _shown(ends: Sequence[RunEnd], by: SchemeOf, shift: int, short: bool) -> set
     return names if count >= LEAST and len(names) > 1 else set()
 
 
-def _is_after(end: RunEnd, by: SchemeOf, steps: int) -> bool:
+def _is_after(end: RunEnd, by: SchemeOf, steps: int, last: Scheme | None = None) -> bool:
     """Whether so many steps of the scheme lead from the sample before to the last.
 
-    Below none they lead from the last to the one before.
+    Below none they lead from the last to the one before. last: the scheme of the last of them.
     """
     start, came = (end.state[:1], end.state[1:])[:: -1 if steps < 0 else 1]
     steps = abs(steps)
     unit = State(**{**vars(start), "orientation": normalize(start.orientation)})
-    plan = (end.sweep.timestep, steps, max(steps, 1), by.coordinates)
-    found = step_body(by.scheme, end.system, unit, *plan)[1][-1]
+    own = ((by.scheme, steps),) if last is None else ((by.scheme, steps - 1), (last, 1))
+    found = unit
+    for scheme, count in own:
+        plan = (end.sweep.timestep, count, max(count, 1), by.coordinates)
+        found = step_body(scheme, end.system, found, *plan)[1][-1]
     apart = {
         "omega": came.angular_velocity - found.angular_velocity,
         "attitude": rotation_between(found.orientation, came.orientation),
