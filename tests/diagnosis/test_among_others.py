@@ -42,6 +42,14 @@ def test_one_cause_with_other_numbers_and_conditions_is_the_same() -> None:
     assert of_few(limited, ["", *others, "", "", "", "", ""]) != limited
 
 
+def test_one_convention_at_the_start_and_of_states_that_are_read_back_is_one_cause() -> None:
+    """Caught: a convention that all scenarios show, called one of few by how it shows."""
+    read = "attitudes are read out of a rotation matrix"
+    begins = f"a run begins at another attitude: {read}, and is sound from there"
+    assert of_few(f"{read}, as a state is set or read back", [begins] * 3).startswith(read)
+    assert of_few(begins, [f"{read}, as a state is set or read back"] * 3) == begins
+
+
 def test_the_cause_of_most_other_scenarios_stands_before_what_is_only_seen() -> None:
     named, seen = "gravity is scaled by 2", "none is known; omega-dot is off"
     assert (

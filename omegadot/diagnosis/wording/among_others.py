@@ -14,10 +14,12 @@ from omegadot.diagnosis.experiments.conditioned import UNKNOWN
 from omegadot.diagnosis.wording.kinds import EITHER, OR, SHARE, is_general, is_named, kind_of
 
 SCOPE = re.compile(
-    r"^(?:in (?:the steps|the dynamics|inverse dynamics|the run)(?: and in inverse dynamics)?, )+"
+    r"^(?:in (?:the steps|the dynamics|inverse dynamics|the run)(?: and in inverse dynamics)?, "
+    r"|a run begins at another attitude: )+"
 )
 ENDS = re.compile(
     r", but not always| \(\S+; other numbers on \d+ more\)|, in forward dynamics alone"
+    r"|, and is sound from there|, as a state is set or read back"
 )
 
 
