@@ -12,12 +12,12 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
 from omegadot.diagnosis.stepping.loads.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.loads.kept_torques import kept_torque_causes
 from omegadot.diagnosis.stepping.loads.load_impulses import impulse_causes
 from omegadot.diagnosis.stepping.loads.load_spell_laws import spell_causes
 from omegadot.diagnosis.stepping.loads.load_times import load_time_causes
 from omegadot.diagnosis.stepping.loads.share_laws import laws_of
 from omegadot.diagnosis.stepping.loads.share_points import points_of
-from omegadot.diagnosis.stepping.loads.tared import tared_causes
 from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
@@ -86,7 +86,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = found or law_causes(by, chosen)
         solves = by.scheme.name in SOLVED  # of an equation one iteration has old operands as well
         found = found or ([] if solves else either(old_operands(by, chosen)))
-        found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
+        found = found or kept_torque_causes(by, chosen) or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
         found = found or solved_causes(by, runs, declared) or tolerance_causes(by, runs)
         found = found or (either(old_operands(by, chosen)) if solves else [])

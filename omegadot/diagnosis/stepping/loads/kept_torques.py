@@ -1,4 +1,4 @@
-"""A torque that has its value of the run's start subtracted from it, in every step of a run.
+"""A torque that is not of its state alone, but less that of a run's start, or that of a sample.
 
 Each torque, in body axes or in world axes, is a lane. The start of a run is its first sample, so
 that every interval is stepped by itself, from its own sample.
@@ -37,15 +37,18 @@ def _of_world(system: System, states: State) -> Array:
 TORQUES: dict[str, Torque] = {
     "the torque of gravity": gravity_torque,
     "the torque in world axes": _of_world,
+    "the torque of gravity and in world axes": lambda s, x: gravity_torque(s, x) + _of_world(s, x),
     "the torque of the damping": damping_torque,
     "the gyroscopic term": gyroscopic,
     "the torque of all loads": loads,
     "the whole torque": lambda system, states: loads(system, states) + gyroscopic(system, states),
 }
-LANES = [(what, world) for world in (False, True) for what in TORQUES]
+LESS = "in a run, {} has that of the run's start{} subtracted from it"
+HELD = "in a run, {} keeps its value of each sample{} until the next"
+LANES = [(how, what, axes) for how in (LESS, HELD) for axes in (False, True) for what in TORQUES]
 
 
-def tared_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
+def kept_torque_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """The torque of which this makes nearly every run that fails, and every one that does not."""
     near = [run for run in runs if run.sweep.every <= MOST_STEPS]
     failing = [run for run in near if run.fails and not run.sound(by).all()]
@@ -65,9 +68,8 @@ def tared_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     good = [k for k, on in enumerate(lanes) if on and made[k] >= LEAST_RUNS]
     good = [k for k in good if len(names[k]) >= SCENARIOS]
     most = max((made[k] for k in good), default=0)
-    for what, world in (LANES[k] for k in good if made[k] == most):
-        axes = ", in world axes," if world else ""
-        return [f"in a run, {what} has that of the run's start{axes} subtracted from it"]
+    for how, what, world in (LANES[k] for k in good if made[k] == most):
+        return [how.format(what, ", in world axes," if world else "")]
     return []
 
 
@@ -82,17 +84,25 @@ def _fits(run: KeptRun, by: SchemeOf) -> NDArray[np.bool_]:
 
 
 def _motion(run: KeptRun, by: SchemeOf) -> Motion:
-    """The body's motion with a torque less in each lane (lanes, m, ...)."""
-    system, start = run.system, run.state[:1]
-    back = inverse(moving_inertia(system))
-    values = [TORQUES[what](system, start) + 0.0 * start.angular_velocity for what, _ in LANES]
-    less = np.stack(values)
-    in_world = np.array([world for _, world in LANES])[:, None, None]
-    held = rotate(start.orientation, less)
+    """The body's motion with another torque in each lane (lanes, m, ...)."""
+    system, back = run.system, inverse(moving_inertia(run.system))
+    first, samples = run.state[np.zeros(len(run.times) - 1, dtype=int)], run.state[:-1]
+    values, in_world = list[Array](), list[Array]()
+    for how, what, _ in LANES:
+        start = first if how == LESS else samples
+        values.append(TORQUES[what](system, start) + 0.0 * start.angular_velocity)
+        in_world.append(rotate(start.orientation, values[-1]))
+    own, there = np.stack(values), np.stack(in_world)
+    turned = np.array([world for _, _, world in LANES])[:, None, None]
+    held = np.array([how == HELD for how, _, _ in LANES])
 
     def acceleration(state: State) -> Acceleration:
         true = forward_dynamics(system, state)
-        torque = np.where(in_world, rotate_inverse(state.orientation, held), less)
-        return Acceleration(true.angular - apply(back, torque), true.linear)
+        kept = np.where(turned, rotate_inverse(state.orientation, there), own)
+        more = -kept
+        for lane in np.flatnonzero(held):
+            here = state[lane]
+            more[lane] = kept[lane] - TORQUES[LANES[lane][1]](system, here)
+        return Acceleration(true.angular + apply(back, more), true.linear)
 
     return motion_over(system, by.coordinates, acceleration)

@@ -1,4 +1,4 @@
-"""A torque that has its value of the run's start subtracted from it, in every step of a run."""
+"""A torque less its value of the run's start, or with that of each sample until the next."""
 
 from __future__ import annotations
 
@@ -68,3 +68,41 @@ def test_a_torque_in_world_axes_is_told_from_that_of_all_loads() -> None:
 def test_a_part_of_the_torque_of_the_start_is_no_whole_one() -> None:
     assert not any("subtracted" in text for text in causes(tared(gyroscopic, share=0.5)))
     assert not np.any(["subtracted" in text for text in causes(tared(gyroscopic, share=0.0))])
+
+
+def held(torque: Torque, every: int, world: bool = False) -> Step:
+    """A step with the torque of the sample before it, of which each `every`-th step is one."""
+    kept = dict[str, State]()
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        state = from_coordinates(system, q, v, "com-world")
+        kept["sample"] = kept.get("sample", state) if n % every else state
+        own = torque(system, kept["sample"])
+        if world:
+            own = rotate_inverse(state.orientation, rotate(kept["sample"].orientation, own))
+        more = own - torque(system, state)
+        return euler(motion, q, v, h, apply(inverse(moving_inertia(system)), more))
+
+    return step
+
+
+def of_both(system: System, state: State) -> Array:
+    return of_world(system, state) + gravity_torque(system, state)
+
+
+@pytest.mark.parametrize(
+    ("torque", "world", "what"),
+    [
+        (of_both, False, "the torque of gravity and in world axes keeps its value of each sample"),
+        (gravity_torque, False, "the torque of gravity keeps its value of each sample"),
+        (gyroscopic, True, "the gyroscopic term keeps its value of each sample, in world axes,"),
+    ],
+)
+def test_a_torque_that_is_formed_at_samples_alone_is_named(
+    torque: Torque, world: bool, what: str
+) -> None:
+    """Caught: loads that are turned once an interval, named by the order that steps lose."""
+    (text,) = causes(held(torque, 3, world), plans=((0.02, 3), (0.009, 3)))
+    assert text == f"in a run, {what} until the next"
