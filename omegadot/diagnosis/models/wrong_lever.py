@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.hypotheses import hypotheses
+from omegadot.diagnosis.equations.hypotheses.hypothesis import Hypothesis
 from omegadot.diagnosis.wording.digits import factor, vector
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.case import Case
@@ -17,6 +20,7 @@ from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inv
 from omegadot.reference_impl.system import Array, State, System
 
 CLOSE = 1e-9  # relative: numbers of a state that are the same
+LEVER = "the lever from the pivot to the centre of mass"
 
 
 def lever_causes(
@@ -37,15 +41,28 @@ def lever_causes(
     held = _held_lever(case.system, evaluation_states.random[0], state)
     if held is None:
         return []
-    pairs = list[tuple[Array, Array]]()
+    systems, levers = list[System](), list[Array]()
     for one in across.scenes.values():
         if one.states is not None and one.system.load.pivot is not None:
             other = _held_lever(one.system, *one.states)
-            due = np.asarray(lever_of(one.system), dtype=float)
-            pairs.append((due, due if other is None else other))
-    law = law_of(pairs, "the lever from the pivot to the centre of mass", "m") if pairs else ""
-    found = law or _known_lever(case.system, held)
+            systems.append(one.system)
+            levers.append(_due(one.system) if other is None else other)
+    found = _law(systems, levers) if systems else ""
+    found = found or _known_lever(case.system, held, systems, levers)
     return [found] if found else [_numbers(case.system, held)] * numbers
+
+
+def _due(system: System) -> Array:
+    return np.asarray(lever_of(system), dtype=float)
+
+
+def _law(systems: Sequence[System], levers: Sequence[Array]) -> str:
+    """Of the levers, or of the centres of mass where the pivots are right; "" without any."""
+    due = [_due(one) for one in systems]
+    text = law_of([*zip(due, levers, strict=True)], LEVER, "m")
+    centers = [np.asarray(one.body.center_of_mass, dtype=float) for one in systems]
+    moved = [c + lever - d for c, lever, d in zip(centers, levers, due, strict=True)]
+    return text or law_of([*zip(centers, moved, strict=True)], "the centre of mass", "m")
 
 
 def _held_lever(system: System, requested: State, back: State) -> Array | None:
@@ -53,7 +70,7 @@ def _held_lever(system: System, requested: State, back: State) -> Array | None:
 
     None as well where something else is wrong.
     """
-    due = np.asarray(lever_of(system), dtype=float)
+    due = _due(system)
     q, w = requested.orientation, requested.angular_velocity
     held = rotate_inverse(back.orientation, back.position)
     size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
@@ -66,24 +83,49 @@ def _held_lever(system: System, requested: State, back: State) -> Array | None:
     return held if np.linalg.norm(held - due) > CLOSE * size else None
 
 
-def _known_lever(system: System, held: Array) -> str:
-    due = np.asarray(lever_of(system), dtype=float)
-    size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
-    for one in sorted(hypotheses(system), key=lambda one: one.part != "precision"):
-        if one.part in ("precision", "pivot", "center"):
-            other = one.system(system)
-            placed = other.load.pivot is not None
-            if placed and np.linalg.norm(held - lever_of(other)) <= CLOSE * size:
-                return one.text
-    k = float(held @ due) / float(due @ due) if np.any(due) else 0.0
-    if np.linalg.norm(held) <= CLOSE * size:
-        return "the lever from the pivot to the centre of mass is taken for zero"
-    if np.linalg.norm(held - k * due) <= CLOSE * size:
-        return f"the lever from the pivot to the centre of mass is scaled by {factor(k)}"
+def _known_lever(
+    system: System, held: Array, systems: Sequence[System], levers: Sequence[Array]
+) -> str:
+    """A lever of a known kind, with how many other scenarios have it not though they would."""
+    for text, made in _known(system, held):
+        others = [
+            _same(lever, _due(one))
+            for one, lever in zip(systems, levers, strict=True)
+            if not _same(made(one), lever)
+        ]
+        if not all(others):  # another lever is wrong by something else
+            continue
+        many = f"{len(others)} other{'s' * (len(others) > 1)}"
+        return f"{text}, not on {many} that would show it" if others else text
     return ""
 
 
+def _known(system: System, held: Array) -> Iterator[tuple[str, Callable[[System], Array]]]:
+    """Each that makes this lever, and what it makes of any system."""
+    for one in sorted(hypotheses(system), key=lambda one: one.part != "precision"):
+        if one.part in ("precision", "pivot", "center"):
+
+            def made(other: System, one: Hypothesis = one) -> Array:
+                changed = one.system(other)
+                return _due(changed if changed.load.pivot is not None else other)
+
+            if one.system(system).load.pivot is not None and _same(made(system), held):
+                yield one.text, made
+    due = _due(system)
+    k = float(held @ due) / float(due @ due) if np.any(due) else 0.0
+    if _same(held, 0.0 * due, due):
+        yield f"{LEVER} is taken for zero", lambda other: 0.0 * _due(other)
+    elif _same(held, k * due, due):
+        yield f"{LEVER} is scaled by {factor(k)}", lambda other: k * _due(other)
+
+
+def _same(one: Array, other: Array, beside: Array | None = None) -> bool:
+    """Whether two levers are one. beside: a lever of which they may be a small part."""
+    size = float(np.linalg.norm(one)) + float(np.linalg.norm(other if beside is None else beside))
+    return bool(np.linalg.norm(one - other) <= CLOSE * size)
+
+
 def _numbers(system: System, held: Array) -> str:
-    due = np.asarray(lever_of(system), dtype=float)
+    due = _due(system)
     shown = f"{vector(held, due)} m from the pivot, where {vector(due, held)} m was requested"
     return f"the centre of mass is placed {shown}: either of them is another"
