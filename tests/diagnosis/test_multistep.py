@@ -11,6 +11,7 @@ from test_over_runs import CASES, Step, kept
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.diagnosis.stepping.slips.multistep import MOST_BACK, Steps, formula_of
 from omegadot.diagnosis.stepping.slips.multistep_slips import order_of
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.schemes.scheme import CHANNELS
@@ -114,3 +115,12 @@ def test_the_order_of_a_formula_is_that_of_its_moments() -> None:
     wrong = (1.5, 0.0, -0.5, 0.0, 0.0)
     assert [order_of((*b, 0.0, 0.0)) for b in ((*AB2, 0.0), AB3, (0.9, 0.0, 0.0))] == [2, 3, 0]
     assert order_of(wrong) == 1
+
+
+def test_rates_that_hardly_change_are_no_error_of_the_search() -> None:
+    """Caught: a singular matrix of numbers in single precision, after which no cause is sought."""
+    count = 40
+    rates = np.ones((count, MOST_BACK + 1, 3))
+    rates += 1e-9 * np.random.default_rng(2).standard_normal(rates.shape)
+    changes = 0.1 + 1e-8 * np.sin(np.arange(3.0 * count)).reshape(count, 3)
+    assert formula_of([Steps(changes, rates, np.full(count, 1e-12))]) is None

@@ -196,7 +196,7 @@ def test_a_term_that_steps_hold_explains_every_scenario() -> None:
     assert "either" in free.with_others([]).text
     for one, other in ((free, top), (top, free)):
         assert one.with_others([other]).text.endswith(
-            "gyroscopic term keeps the value of its start"
+            "gyroscopic term keeps the value of the step's start"
         )
     assert free.with_others([late]).text.endswith("omega moves by omega-dot of the step's start")
     assert "start" not in top.with_others([late]).text

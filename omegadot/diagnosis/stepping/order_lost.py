@@ -112,7 +112,8 @@ def _held_over(every: Sequence[tuple[frozenset[str], frozenset[str]]]) -> str:
         return ""
     names = [name for name in TERMS if name in held]
     terms = (
-        f"in a step {listed(names)} {'keep' if len(held) > 1 else 'keeps'} the value of its start"
+        f"in short steps {listed(names)} {'keep' if len(held) > 1 else 'keeps'} the value of the "
+        "step's start"
     )
     whole = moves("omega", 0.0)
     if held != there:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.defect import first_found
 from omegadot.diagnosis.stepping.ends.skipped_steps import skipped_steps
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
@@ -69,28 +70,51 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
     failing = {run.name for run in runs if run.fails}
     with np.errstate(all="ignore"):
         # of these every interval of every run must be made, which one motion may decide
-        found = multistep_slips(integrator, runs) or commutator_slips(integrator, runs)
-        found = found or jacobian_slips(integrator, runs)
+        found = first_found(
+            (
+                lambda: multistep_slips(integrator, runs),
+                lambda: commutator_slips(integrator, runs),
+                lambda: jacobian_slips(integrator, runs),
+            )
+        )
         if found or len(failing) < SCENARIOS:
             return found
         by, chosen = scheme_of(integrator, runs), [run.short for run in _chosen(runs)]
-        declared = integrator.scheme is not None
-        if by is None:
-            return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = switched(by, runs) or between_steps(by, runs) or first_step_causes(by, runs)
-        found = found or substeps_of_runs(integrator, by, chosen)
-        found = found or either(limit_causes(by, runs))
-        found = found or skipped_steps(by, runs) or length_causes(by, runs)
-        found = found or load_time_causes(by, runs) or spell_causes(by, runs)
-        found = found or impulse_causes(by, runs)
-        found = found or law_causes(by, chosen)
-        solves = by.scheme.name in SOLVED  # of an equation one iteration has old operands as well
-        found = found or ([] if solves else either(old_operands(by, chosen)))
-        found = found or kept_torque_causes(by, chosen) or stage_slips(integrator, by, chosen)
-        found = found or exponential_causes(by, runs) or mixed_turns(by, runs, declared)
-        found = found or solved_causes(by, runs, declared) or tolerance_causes(by, runs)
-        found = found or (either(old_operands(by, chosen)) if solves else [])
-        return found or place_causes(by, runs)
+        return first_found(_searches(integrator, by, runs, chosen))
+
+
+def _searches(
+    integrator: Integrator, by: SchemeOf | None, runs: Sequence[KeptRun], chosen: Sequence[KeptRun]
+) -> Iterator[Callable[[], list[str]]]:
+    """Each of what is sought over all runs, what is the plainest first."""
+    declared = integrator.scheme is not None
+    if by is None:
+        yield lambda: stage_slips(integrator, by, chosen)
+        yield lambda: solved_causes(by, runs, declared)
+        return
+    yield lambda: switched(by, runs)
+    yield lambda: between_steps(by, runs)
+    yield lambda: first_step_causes(by, runs)
+    yield lambda: substeps_of_runs(integrator, by, chosen)
+    yield lambda: either(limit_causes(by, runs))
+    yield lambda: skipped_steps(by, runs)
+    yield lambda: length_causes(by, runs)
+    yield lambda: load_time_causes(by, runs)
+    yield lambda: spell_causes(by, runs)
+    yield lambda: impulse_causes(by, runs)
+    yield lambda: law_causes(by, chosen)
+    solves = by.scheme.name in SOLVED  # of an equation one iteration has old operands as well
+    if not solves:
+        yield lambda: either(old_operands(by, chosen))
+    yield lambda: kept_torque_causes(by, chosen)
+    yield lambda: stage_slips(integrator, by, chosen)
+    yield lambda: exponential_causes(by, runs)
+    yield lambda: mixed_turns(by, runs, declared)
+    yield lambda: solved_causes(by, runs, declared)
+    yield lambda: tolerance_causes(by, runs)
+    if solves:
+        yield lambda: either(old_operands(by, chosen))
+    yield lambda: place_causes(by, runs)
 
 
 def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:

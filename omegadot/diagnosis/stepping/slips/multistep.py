@@ -148,5 +148,7 @@ def _fitted(line: Array, right: Array) -> tuple[Array, Array] | None:
     values, _, rank, _ = np.linalg.lstsq(line, right)
     if rank < line.shape[1]:
         return None
-    known_to = SLACK * np.sqrt(np.diag(np.linalg.inv(line.T @ line)))
+    _, sizes, axes = np.linalg.svd(line, full_matrices=False)
+    # the product of a matrix of nearly equal columns with itself has no inverse
+    known_to = SLACK * norm((axes / sizes[:, None]).T)
     return (values, known_to) if np.all(known_to < SURE) else None
