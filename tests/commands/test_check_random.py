@@ -163,7 +163,7 @@ def test_a_state_off_the_motion_is_printed(
     assert set(found.at) == {"orientation", "angular_velocity", "position", "linear_velocity"}
     print_checks(checked)
     printed = capsys.readouterr().out
-    assert f"Its own motion does not show it: {what} at orientation = [" in printed
+    assert f"It fails at a state that is none of its run: {what} at orientation = [" in printed
     print_json(checked)
     assert json.loads(capsys.readouterr().out)["failing"][0]["at"] == found.at
 

@@ -38,7 +38,7 @@ def _print(console: Console, found: Failing, of_several: bool) -> None:
     console.print(Text(f"    What is left in it: {left}. {found.message}"))
     if found.at:
         what = "the equation is wrong" if found.check.gate == "equation" else "a single step fails"
-        line = f"Its own motion does not show it: {what} at {state_text(found.at)}."
+        line = f"It fails at a state that is none of its run: {what} at {state_text(found.at)}."
         console.print(Text(f"    {line}"))
     if found.cause and of_several:
         console.print(Text(f"    Likely cause, found on {found.check.scenario}: {found.cause}"))
