@@ -36,14 +36,13 @@ def system_of(scenario: Scenario) -> System:
 
 def _load_of(scenario: Scenario) -> Load:
     given = scenario.load
-    torque = np.array(given.torque.value, dtype=float)
-    none = np.zeros(3)
+    torques = {one.frame: np.array(one.value, dtype=float) for one in given.torque}
     return Load(
         gravity=np.array(given.gravity, dtype=float),
         pivot=None if given.pivot is None else np.array(given.pivot, dtype=float),
         damping=np.array(given.damping, dtype=float),
-        torque_body=torque if given.torque.frame == "body" else none,
-        torque_world=torque if given.torque.frame == "world" else none,
+        torque_body=torques.get("body", np.zeros(3)),
+        torque_world=torques.get("world", np.zeros(3)),
     )
 
 

@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import (
+    Field,
+    PlainValidator,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    field_serializer,
+    model_validator,
+)
 
 from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Part
@@ -128,13 +135,36 @@ class Torque(Table):
     value: Vector = Field(description="N m")
 
 
+def _read_torques(value: object, read: ValidatorFunctionWrapHandler) -> tuple[Torque, ...]:
+    """One table, or a list of them; the torque in body axes comes first."""
+    if not isinstance(value, list | tuple) or not any(isinstance(x, dict | Torque) for x in value):
+        return (Torque.model_validate(value),)
+    torques: tuple[Torque, ...] = read(value)
+    frames = [one.frame for one in torques]
+    for i, frame in enumerate(frames):
+        if frame in frames[:i]:
+            advice = "give one torque in each frame at most, or their sum"
+            raise refuse(advice, key=f"[{i}].frame", found=frame)
+    return tuple(sorted(torques, key=lambda one: one.frame))
+
+
 class Load(Table):
-    """What acts on the body. Without a pivot the body is free."""
+    """What acts on the body. Without a pivot the body is free.
+
+    torque: one, or one in each frame.
+    """
 
     gravity: Vector = Field(default=ZERO, description="m/s^2, world")
     pivot: Vector | None = Field(default=None, description="m, body axes, from the body origin")
     damping: NotNegative = Field(default=0.0, description="N m s/rad, torque = -damping * omega")
-    torque: Torque = Field(default=Torque(frame="body", value=ZERO), description="N m")
+    torque: Annotated[tuple[Torque, ...], WrapValidator(_read_torques)] = Field(
+        default=(Torque(frame="body", value=ZERO),), description="N m"
+    )
+
+    @field_serializer("torque")
+    def _one_as_a_table(self, torques: tuple[Torque, ...]) -> object:
+        tables = [one.model_dump(mode="json", warnings=False) for one in torques]
+        return tables if len(tables) > 1 else tables[0]
 
 
 class Run(Table):

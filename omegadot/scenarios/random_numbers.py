@@ -134,6 +134,17 @@ def run_of(draw: Draw, rate: float) -> tuple[dict[str, Any], float]:
     return run, angle * steps
 
 
+def in_both_frames(frame: str, value: list[float]) -> list[dict[str, Any]]:
+    """Half of a torque in its frame, and in the other frame one as large of other components.
+
+    Their sum is then at no attitude larger than the torque was.
+    """
+    half = 0.5 * np.array(value)
+    other = np.roll(half, 1) * (1.0, -1.0, -1.0)
+    frames = (frame, "world" if frame == "body" else "body")
+    return [{"frame": f, "value": rounded(v)} for f, v in zip(frames, (half, other), strict=True)]
+
+
 def loads_of(
     random: Generator, draw: Draw, inertia: Array, arm: float, size: float, rate: float, turn: float
 ) -> dict[str, Any]:
@@ -156,7 +167,10 @@ def loads_of(
         signs = np.array([1.0 if draw.octant >> bit & 1 else -1.0 for bit in range(3)])
         gain = random.uniform(1.5, 4.0) * (0.25 if draw.traits["steps"] == "coarse" else 1.0)
         torque = least * rate**2 * gain / np.sqrt(6.0 * turn)
-        load["torque"] = {"frame": frame, "value": rounded(torque * signs * abs(oblique(random)))}
+        value = rounded(torque * signs * abs(oblique(random)))
+        load["torque"] = (
+            in_both_frames(frame, value) if draw.both else {"frame": frame, "value": value}
+        )
     return load
 
 

@@ -56,11 +56,12 @@ def random_scenario(seed: int, index: int) -> Scenario:
     load = loads_of(random, draw, about, arm, size, rate, turn)
     if pivot is not None:
         load["pivot"] = pivot.tolist()
+    shown = {**draw.traits, "torque": "body and world"} if draw.both else draw.traits
     return Scenario.model_validate(
         {
             "schema": 1,
             "name": f"random-{seed}-{index}",
-            "shows": ", ".join(f"{trait} {level}" for trait, level in draw.traits.items()),
+            "shows": ", ".join(f"{trait} {level}" for trait, level in shown.items()),
             "body": {"mass": mass, "inertia": tensor.tolist(), "center_of_mass": center.tolist()},
             "initial": initial_of(random, draw, tensor, size, rate),
             "load": load,

@@ -1,7 +1,8 @@
 """What random systems have in them, drawn from a seed: the same seed gives the same traits.
 
 They come in blocks of 24. Within a block every two traits occur together, and magnitudes are spread
-evenly over their range. Two systems of a block spin steadily, at steps that turn them far.
+evenly over their range. Two systems of a block spin steadily, at steps that turn them far. Some of
+those with a torque in body or in world axes have another in the other axes.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from numpy.random import Generator
 from omegadot.scenarios.pairs import covering_rows
 
 BLOCK = 24
+FOURTH = 4  # of the systems with a torque in one frame, those with another in the other
 TRAITS = {
     "support": ("free", "flying", "pivot", "pivot-at-origin"),
     "center": ("offset", "origin"),
@@ -92,13 +94,14 @@ class Draw:
     """What is drawn of a system before its numbers.
 
     share: of the range of each magnitude.  octant: of a torque, a bit for each component's sign.
-    steady: its omega is constant.
+    steady: its omega is constant.  both: a torque acts in the other frame as well.
     """
 
     traits: Mapping[str, str]
     share: Mapping[str, float]
     octant: int
     steady: bool = False
+    both: bool = False
 
 
 def _ranks(
@@ -145,8 +148,10 @@ def _block(seed: int, number: int) -> tuple[Draw, ...]:
     # those of large torques have every sign among them, and so have the others
     ranks = _ranks([_drive(row) for row in rows], random)
     octants = [OCTANTS[rank % len(OCTANTS)] for rank, _ in ranks]
+    both = _in_both_frames(rows)
     return tuple(
-        Draw(row, shares[place], octants[place], place in steady) for place, row in enumerate(rows)
+        Draw(row, shares[place], octants[place], place in steady, place in both)
+        for place, row in enumerate(rows)
     )
 
 
@@ -160,6 +165,14 @@ def _drive(traits: Mapping[str, str]) -> tuple[bool, bool]:
     """Whether a torque acts, and whether it is large."""
     large = traits["bulk"].endswith("large") and traits["rate"] != "slow"
     return traits["torque"] != "none", large
+
+
+def _in_both_frames(rows: Sequence[Mapping[str, str]]) -> set[int]:
+    """Of the free bodies with a torque every fourth, from the first, and so of the pivoted ones."""
+    driven = [place for place, row in enumerate(rows) if row["torque"] != "none"]
+    pivoted = [place for place in driven if rows[place]["support"].startswith("pivot")]
+    free = [place for place in driven if place not in pivoted]
+    return {*free[::FOURTH], *pivoted[::FOURTH]}
 
 
 def drawn(seed: int, index: int) -> Draw:

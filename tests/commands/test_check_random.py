@@ -223,6 +223,27 @@ def test_a_system_that_fails_whatever_is_left_becomes_the_simplest(index: int) -
     assert scenario_of(_toml(to_toml(found)), "again") == found
 
 
+def test_of_two_torques_one_is_left_where_it_alone_shows_a_fault() -> None:
+    """Caught: a pair of torques that goes as a whole or not at all, or in other units by half."""
+    (index, *_) = (n for n in range(BLOCK) if len(random_case(2, n).scenario.load.torque) == 2)
+    tables = tables_of(random_case(2, index), "one")
+    found = scenario_of(tables, "one")
+    assert {"a torque in body axes", "a torque in world axes"} <= set(ingredients(found))
+    body, world = tables["load"]["torque"]
+    left = [simpler(tables)["load"]["torque"] for simpler in SIMPLER]
+    assert [body] in left
+    assert [world] in left
+    largest = np.abs(world["value"]) == np.max(np.abs(world["value"]))
+    along = {"frame": "world", "value": np.where(largest, world["value"], 0.0).tolist()}
+    assert [body, along] in left
+    assert scenario_of(_toml(to_toml(found)), "again") == found
+    for one, other in zip(
+        tables["load"]["torque"], scaled(tables, 3.0, 0.5, 7.0)["load"]["torque"], strict=True
+    ):
+        assert one["frame"] == other["frame"]
+        np.testing.assert_allclose(other["value"], 49.0 / 0.75 * np.array(one["value"]), rtol=1e-12)
+
+
 def test_every_built_in_scenario_can_be_written() -> None:
     for name in ("nesc-checkcase-2", "heavy-top", "driven-world", "damped-tumble", "free-bar"):
         found = scenario(name)

@@ -80,6 +80,13 @@ def test_torque_in_world_axes_and_a_pivot() -> None:
     assert np.allclose(initial.linear_velocity, np.cross([1, 2, 3], [0, 0, 0.3]), atol=4 * EPS)
 
 
+def test_torques_in_both_axes_act_each_in_its_own() -> None:
+    world, body = ({"frame": f, "value": v} for f, v in (("world", [0, 1, 4]), ("body", [1, 2, 3])))
+    load = system_of(scenario(PLAIN, {"torque": [world, body]})).load
+    assert np.array_equal(load.torque_body, [1.0, 2.0, 3.0])
+    assert np.array_equal(load.torque_world, [0.0, 1.0, 4.0])
+
+
 def test_parts_are_summed() -> None:
     # a T of two cylinders: 1 kg along z, 2 kg along x across its upper end
     stem = {"shape": "cylinder", "radius": 0.1, "length": 1.0, "mass": 1.0}

@@ -183,7 +183,7 @@ def test_damped_tumble_goes_over_to_the_axis_of_greatest_inertia() -> None:
 
 @pytest.mark.parametrize("frame", ["body", "world"])
 def test_driven_bodies_have_their_torque_in_their_axes(frame: str) -> None:
-    torque = load_builtin(f"driven-{frame}").load.torque
+    (torque,) = load_builtin(f"driven-{frame}").load.torque
     assert torque.frame == frame
     assert all(torque.value)
 

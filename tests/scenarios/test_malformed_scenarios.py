@@ -18,6 +18,7 @@ DURATION = "duration = 1.0"
 STEPS = "timesteps = [0.02, 0.01]"
 SAMPLE = "sample = 0.02"
 LOADED = SOUND + "[load]\n"
+TORQUE = "[[load.torque]]\nframe = 'body'\nvalue = [0, 0, 1]\n"
 LINE = 'shape = "point"\nmass = 1.0\nposition = [{0}.1, {0}.2, {0}.3]\n'
 
 # text of the file, key, value as found, text that the advice must have
@@ -153,6 +154,20 @@ MALFORMED: list[tuple[str, str, str, str]] = [
         "world",
     ),
     (LOADED + "torque = { frame = 'body' }", "load.torque.value", "missing", "N m"),
+    (LOADED + "torque = []", "load.torque", "[]", "table"),
+    (LOADED + TORQUE + TORQUE, "load.torque[1].frame", "'body'", "one torque in each frame"),
+    (
+        LOADED + TORQUE + "[[load.torque]]\nframe = 'world'\n",
+        "load.torque[1].value",
+        "missing",
+        "N m",
+    ),
+    (
+        LOADED + TORQUE + "values = [0, 0, 1]\n",
+        "load.torque[0].values",
+        "an unknown key ([0, 0, 1])",
+        "value",
+    ),
     (
         with_line(OMEGA, f"{OMEGA}\nposition = [0, 0, 0]") + "[load]\npivot = [0, 0, 0]",
         "initial.position",

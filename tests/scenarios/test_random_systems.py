@@ -4,6 +4,7 @@ What these tests catch: a draw that leaves a pair of traits out, or a decade; on
 what was drawn before; numbers that no file can hold, or that no engine can be judged on.
 """
 
+from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
-from omegadot.scenarios import ScenarioError, scenario, scenario_of
+from omegadot.scenarios import ScenarioError, random_systems, scenario, scenario_of
 from omegadot.scenarios.pairs import covering_rows
 from omegadot.scenarios.random_systems import random_names, random_scenario
 from omegadot.scenarios.random_traits import BLOCK, TRAITS, drawn
@@ -75,7 +76,7 @@ def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
     assert np.mean(np.abs(parts - np.round(parts)) > 1e-3) > 0.3
     assert max(steps) > 999
     assert sum(one.load.damping > 1.0 for one in found) >= 2
-    torques = np.array([one.load.torque.value for one in found])
+    torques = np.array([torque.value for one in found for torque in one.load.torque])
     assert (torques > 0.25).any(0).all()
     assert (torques < -0.25).any(0).all()
     assert {np.sign(one.initial.orientation[0]) for one in found} >= {-1.0, 1.0}
@@ -102,7 +103,7 @@ def test_a_system_can_be_written_solved_and_resolved(index: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_two_bodies_of_a_block_turn_far_and_steadily(seed: int) -> None:
     found = [random_scenario(seed, n) for n in range(BLOCK) if drawn(seed, n).steady]
-    assert [one.load.torque.value for one in found] == [(0.0, 0.0, 0.0)] * 2
+    assert [[torque.value for torque in one.load.torque] for one in found] == [[(0.0,) * 3]] * 2
     moments = [np.unique(np.diag(one.body.inertia)) for one in found]
     assert sorted(map(len, moments)) == [1, 3]
     for one in found:
@@ -112,6 +113,39 @@ def test_two_bodies_of_a_block_turn_far_and_steadily(seed: int) -> None:
         sphere = len(np.unique(np.diag(tensor))) == 1
         # where some engines cap a turn
         assert max(one.run.timesteps) * rate > (np.pi / 2 if sphere else np.pi / 4)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_some_of_a_block_have_a_torque_in_each_frame(seed: int) -> None:
+    """Caught: a block where an engine that is wrong only where both are given passes."""
+    for start in (0, BLOCK):
+        found = [random_scenario(seed, start + index) for index in range(BLOCK)]
+        both = [one for one in found if len(one.load.torque) == 2]
+        driven = [one for one in found if any(one.load.torque[0].value)]
+        assert 4 <= len(both) <= len(driven) / 3
+        assert {one.load.pivot is None for one in both} == {True, False}
+        for one in both:
+            first, second = (np.array(torque.value) for torque in one.load.torque)
+            assert np.min(np.abs(first - second)) > 0.05 * np.max(np.abs(first))
+            assert one.shows is not None
+            assert "torque body and world" in one.shows
+
+
+def test_a_second_torque_changes_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Caught: one that is drawn, so that all that is drawn after it changes."""
+    found = [random_scenario(0, index).to_dict() for index in range(BLOCK)]
+    monkeypatch.setattr(random_systems, "drawn", lambda *one: replace(drawn(*one), both=False))
+    for index, one in enumerate(found):
+        other = random_scenario(0, index).to_dict()
+        if drawn(0, index).both:
+            single, pair = other["load"].pop("torque"), one["load"].pop("torque")
+            del one["shows"], other["shows"]
+            (half,) = (torque["value"] for torque in pair if torque["frame"] == single["frame"])
+            np.testing.assert_allclose(half, 0.5 * np.array(single["value"]), rtol=1e-5)
+            assert sum(np.linalg.norm(torque["value"]) for torque in pair) == pytest.approx(
+                np.linalg.norm(single["value"]), rel=1e-5
+            )
+        assert one == other
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,9 @@ def sound_dicts(draw: st.DrawFn) -> dict[str, object]:
     orientation = [*draw(VECTOR), draw(st.floats(1e-3, 1.0))]
     pivot = {"pivot": draw(VECTOR)} if draw(st.booleans()) else {}
     place = {} if pivot else {"position": draw(VECTOR)}
-    torque = {"frame": draw(st.sampled_from(["body", "world"])), "value": draw(VECTOR)}
+    frames = draw(st.sampled_from([["body"], ["world"], ["body", "world"], ["world", "body"]]))
+    torques = [{"frame": frame, "value": draw(VECTOR)} for frame in frames]
+    torque = torques if len(torques) > 1 else torques[0]
     return {
         "schema": 1,
         "name": "a-body",

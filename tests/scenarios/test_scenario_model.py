@@ -21,6 +21,7 @@ from omegadot.scenarios import Scenario, ScenarioError, scenario_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass, mean_squares, volume
 from omegadot.scenarios.tensor import broken_triangle
+from omegadot.scenarios.writing import to_toml
 
 
 def changed(table: str, **values: Any) -> Scenario:
@@ -43,11 +44,29 @@ def test_defaults_are_those_of_the_contract() -> None:
     assert scenario.load.gravity == (0.0, 0.0, 0.0)
     assert scenario.load.pivot is None
     assert scenario.load.damping == 0.0
-    assert (scenario.load.torque.frame, scenario.load.torque.value) == ("body", (0.0, 0.0, 0.0))
+    (torque,) = scenario.load.torque
+    assert (torque.frame, torque.value) == ("body", (0.0, 0.0, 0.0))
     assert scenario.shows is None
     assert scenario.source is None
     untitled = {key: value for key, value in tomllib.loads(SOUND).items() if key != "title"}
     assert scenario_of(untitled, "test").title == "a-body"
+
+
+def test_a_torque_is_a_table_or_one_in_each_frame() -> None:
+    """Caught: a single torque that is written as a list, or two that depend on their order."""
+    body = {"frame": "body", "value": [1.0, 2.0, 3.0]}
+    world = {"frame": "world", "value": [0.0, 0.0, 4.0]}
+    one, listed = changed("load", torque=body), changed("load", torque=[body])
+    assert one == listed
+    assert one.to_dict()["load"]["torque"] == body
+    two = changed("load", torque=[world, body])
+    assert two == changed("load", torque=(body, world))
+    assert two.to_dict()["load"]["torque"] == [body, world]
+    assert [one.frame for one in two.load.torque] == ["body", "world"]
+    for found in (one, two):
+        assert scenario_of(tomllib.loads(to_toml(found)), "again") == found
+        assert scenario_of(found.to_dict(), "again") == found
+    assert 'torque = { frame = "body", value = [1.0, 2.0, 3.0] }' in to_toml(one).splitlines()
 
 
 def test_a_scenario_cannot_be_changed() -> None:

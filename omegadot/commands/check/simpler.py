@@ -13,7 +13,8 @@ from omegadot.commands.check.tables import IDENTITY, UNUSUAL, ZERO, Tables, scal
 Simpler = Callable[[Tables], Tables]
 
 LOADS = ("torque", "gravity", "damping", "pivot", "center_of_mass")
-NO_TORQUE: Tables = {"frame": "body", "value": ZERO}
+NO_TORQUE = [{"frame": "body", "value": ZERO}]
+FRAMES = ("body", "world")
 VECTORS = (
     ("initial", "angular_velocity"),
     ("load", "gravity"),
@@ -50,6 +51,13 @@ def _without(tables: Tables, loads: Sequence[str] = LOADS) -> Tables:
     return _with(tables, "load", **{load: nothing[load] for load in loads if load in nothing})
 
 
+def _without_one_torque(tables: Tables, frame: str) -> Tables:
+    """The other torque alone, where there are two."""
+    torques = tables["load"]["torque"]
+    others = [one for one in torques if one["frame"] != frame]
+    return _with(tables, "load", torque=others or torques)
+
+
 def _unturned(tables: Tables) -> Tables:
     return _with(tables, "initial", orientation=IDENTITY)
 
@@ -81,10 +89,14 @@ def _along_one_axis(tables: Tables, table: str, key: str) -> Tables:
     return _with(tables, table, **{key: vector.tolist()})
 
 
-def _torque_along_one_axis(tables: Tables) -> Tables:
-    torque = {"load": {"value": tables["load"]["torque"]["value"]}}
-    value = _along_one_axis(torque, "load", "value")["load"]["value"]
-    return _with(tables, "load", torque={**tables["load"]["torque"], "value": value})
+def _torque_along_one_axis(tables: Tables, frame: str) -> Tables:
+    torques = [
+        _along_one_axis({"torque": one}, "torque", "value")["torque"]
+        if one["frame"] == frame
+        else one
+        for one in tables["load"]["torque"]
+    ]
+    return _with(tables, "load", torque=torques)
 
 
 def _shorter(tables: Tables) -> Tables:
@@ -122,13 +134,13 @@ def _rounded(tables: Tables, digits: int) -> Tables:
     steps = [short * (other / step) for other in run["timesteps"]]
     duration = float(f"{max(1, count) * short:.12g}")
     rounded = {k: _rounded_value(v, digits) for k, v in load.items() if k != "torque"}
-    value = _rounded_value(load["torque"]["value"], digits)
+    torques = [_rounded_value_of(one, digits) for one in load["torque"]]
     initial = {k: v for k, v in tables["initial"].items() if k != "orientation"}
     return {
         **tables,
         "body": {k: _rounded_value(v, digits) for k, v in tables["body"].items()},
         "initial": {**tables["initial"], **_rounded_value_of(initial, digits)},
-        "load": {**rounded, "torque": {**load["torque"], "value": value}},
+        "load": {**rounded, "torque": torques},
         "run": {
             "duration": duration,
             "timesteps": steps,
@@ -152,6 +164,7 @@ SIMPLER: tuple[Simpler, ...] = (
     brief,
     _bare,
     *(partial(_without, loads=(load,)) for load in LOADS),
+    *(partial(_without_one_torque, frame=frame) for frame in FRAMES),
     partial(_one_step_size, number=0),
     partial(_one_step_size, number=-1),
     _shorter,
@@ -163,7 +176,7 @@ SIMPLER: tuple[Simpler, ...] = (
     _one_two_three,
     _principal,
     *(partial(_along_one_axis, table=table, key=key) for table, key in VECTORS),
-    _torque_along_one_axis,
+    *(partial(_torque_along_one_axis, frame=frame) for frame in FRAMES),
     *(partial(_rounded, digits=digits) for digits in (1, 2, 3)),
 )
 """In the order in which they are tried: what leaves out the most, or makes runs cheap, first."""

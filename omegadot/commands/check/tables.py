@@ -19,7 +19,7 @@ LARGE_TURN = 0.3  # rad
 
 
 def tables_of(case: Case, name: str) -> Tables:
-    """A case as tables with every number in them, and this name."""
+    """A case as tables with every number in them, and this name; its torques are a list."""
     body, data = case.system.body, case.scenario.to_dict()
     data["body"] = {
         "mass": float(body.mass),
@@ -27,6 +27,8 @@ def tables_of(case: Case, name: str) -> Tables:
         "center_of_mass": np.asarray(body.center_of_mass, float).tolist(),
         "allow_impossible_inertia": case.scenario.body.allow_impossible_inertia,
     }
+    torque = data["load"]["torque"]
+    data["load"]["torque"] = torque if isinstance(torque, list) else [torque]
     data.pop("source", None)
     data.pop("shows", None)
     return {**data, "name": name, "title": f"Shrunk from {case.name}"}
@@ -42,7 +44,7 @@ def scaled(tables: Tables, mass: float, size: float, time: float) -> Tables:
 
     units = {"gravity": size / time**2, "pivot": size, "damping": inertia / time}
     loads = {key: over(load[key], unit) for key, unit in units.items() if key in load}
-    torque = over(load["torque"]["value"], inertia / time**2)
+    torques = [{**one, "value": over(one["value"], inertia / time**2)} for one in load["torque"]]
     places = {"position": size, "linear_velocity": size / time, "angular_velocity": 1.0 / time}
     return {
         **tables,
@@ -56,7 +58,7 @@ def scaled(tables: Tables, mass: float, size: float, time: float) -> Tables:
             **initial,
             **{k: over(initial[k], u) for k, u in places.items() if k in initial},
         },
-        "load": {**load, **loads, "torque": {**load["torque"], "value": torque}},
+        "load": {**load, **loads, "torque": torques},
         "run": {key: over(run[key], time) for key in ("duration", "timesteps", "sample")},
     }
 
@@ -83,7 +85,7 @@ def ingredients(found: Scenario, stepped: bool = False) -> tuple[str, ...]:
         "a pivot off the origin": load.pivot is not None and any(load.pivot),
         gravity: any(load.gravity),
         f"a damping of {written(load.damping)} N m s/rad": load.damping > 0.0,
-        f"a torque in {load.torque.frame} axes": any(load.torque.value),
+        **{f"a torque in {one.frame} axes": any(one.value) for one in load.torque},
         "a turned start": list(start.orientation) != IDENTITY,
         "a start at rest": not any(start.angular_velocity),
         "a start of several components of omega": sum(map(bool, start.angular_velocity)) > 1,

@@ -107,6 +107,26 @@ def TorqueReversedOnOneAxis(load: Load) -> Load:
     return replace(load, torque_body=body, torque_world=world)
 
 
+def driven_twice(load: Load) -> bool:
+    """Whether a torque in body axes acts and one in world axes."""
+    return bool(np.any(load.torque_body) and np.any(load.torque_world))
+
+
+@other_load(
+    "torque-body torque-world", named="the torque in body axes is taken for one in world axes"
+)
+def TorquesSummedInWorldAxes(load: Load) -> Load:
+    """Where torques in body and in world axes both act, their sum is taken in world axes."""
+    both = load.torque_body + load.torque_world
+    return when(driven_twice(load), load, torque_body=NONE, torque_world=both)
+
+
+@other_load("torque-body torque-world", named="the torque in world axes is missing")
+def WorldTorqueLostWhenDrivenInBodyAxes(load: Load) -> Load:
+    """A torque in world axes does not act where one in body axes does: an elif for an if."""
+    return when(driven_twice(load), load, torque_world=NONE)
+
+
 @accelerated("damping", named="rate")
 def DampingAsRate(self: Accelerated, state: State, sound: Acceleration) -> Acceleration:
     """Damping is a rate, not a torque: omega-dot has ``-d omega`` whatever the inertia."""
