@@ -246,3 +246,7 @@ def test_an_unknown_scheme_may_round_the_momentum() -> None:
     assert judge(found, None, 3).kind == "unsettled"
     assert judge(replace(found, of_momentum=np.full(3, 2e-9)), None, 3).kind == "unresolved"
     assert judge(replace(found, of_momentum=np.full(3, 5e-10)), None, 3).kind == "unsettled"
+    # a resolved order that is near a whole number by chance says no more
+    found = evidence([0.0, 1e-9, 1e-9], None, None, ObservedOrder(-1.1, True))
+    assert judge(found, None, 1).kind == "unexplained"
+    assert judge(replace(found, of_momentum=np.full(3, 2e-9)), None, 1).kind == "unresolved"

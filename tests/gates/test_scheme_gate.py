@@ -123,6 +123,13 @@ def test_orders_are_judged_within_the_tolerance_and_may_be_higher():
     assert held(sweep_of(1.1), 2).verdict == "fail"
     assert held(sweep_of(0.0, 1e-2), 1).verdict == "fail"
     assert held(sweep_of(0.0, 1e-2), 1, stiffness=1.01).verdict == "info"
+
+
+def test_an_order_of_what_may_be_rounding_of_the_momentum_is_none():
+    """Caught: a momentum-keeping engine on a thin body, of which rounding grows as steps shrink."""
+    for size, verdict in ((1e-7, "info"), (1e-11, "fail")):
+        runs = sweep_of(-1.0, 1e-11, of_momentum={"attitude": np.full(11, size)})
+        assert held(runs, 1).verdict == verdict
     assert held(sweep_of(1.0), None).verdict == "info"
 
 

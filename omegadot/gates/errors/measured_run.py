@@ -61,6 +61,13 @@ class MeasuredRun:
         bound = OF_EITHER * self.round_off[channel]
         return bool(np.all(self.against_scheme[channel] <= bound))
 
+    def may_be_rounding(self, channel: str) -> bool:
+        """Whether an unknown scheme may have made all of the error by rounding the momentum."""
+        rounding = self.of_momentum.get(channel)
+        if self.against_scheme or rounding is None:
+            return False
+        return bool(np.all(self.error[channel] <= rounding))
+
     @property
     def saturating_error(self) -> Array:
         """(n,), the largest error of those that saturate where they are as large as the motion."""

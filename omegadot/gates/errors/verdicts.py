@@ -178,6 +178,8 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         falls = any(o.value < declared - 0.5 and o.rise <= ORDER_TOLERANCE for o in shown)
         falls = falls and not evidence.may_be_rounding
         return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
+    if lowest.value < least and evidence.may_be_rounding:
+        return Finding("unresolved", f"{UNSETTLED}: {text}")
     if lowest.value < least:
         if lowest.value + lowest.rise >= least or not is_whole(lowest.value):
             rises = lowest.rise > ORDER_TOLERANCE and evidence.excess <= 1.0

@@ -27,6 +27,7 @@ from omegadot.written import written
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
 OPENED = "beyond rounding, within what the scheme itself leaves open"
+MOMENTUM = "the angular momentum, where it is what is stepped, may round by as much"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
@@ -64,6 +65,8 @@ def order_rows(
             verdict, note = _held_to(shown, limit, explained)
             if verdict == "fail" and stiffness > 1.0:
                 verdict, note = "info", f"{STIFF}: {note}"
+            if verdict == "fail" and measured.may_be_rounding(channel):
+                verdict, note = "info", f"{MOMENTUM}: {note}"
         bound = None if limit is None else float(limit)
         found.append(Row(GATE, channel, "observed_order", shown.value, "1", bound, verdict, note))
     return found
