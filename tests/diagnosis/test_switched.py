@@ -10,6 +10,7 @@ import pytest
 from wrong_equations import PIVOT, case
 
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.slips.scheme_by_length import scheme_by_length
 from omegadot.diagnosis.stepping.slips.switched import switched
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.schemes import SCHEMES
@@ -96,3 +97,29 @@ def test_a_share_of_each_run_is_named_as_one() -> None:
     (text,) = switched(BY, runs)
     assert text.startswith("from a share of each run between ")
     assert " and 50 % on, steps are those of " in text
+
+
+def by_length(first: Callable[[float], int]) -> list[str]:
+    runs = [kept(one, h, 1, first(h)) for one in CASES for h in (0.04, 0.02, 0.01)]
+    return scheme_by_length(BY, runs)
+
+
+@pytest.mark.parametrize(
+    ("first", "way"),
+    [
+        (lambda h: 0 if h > 0.015 else NEVER, "longer than a limit between 0.01 and 0.02 s"),
+        (lambda h: 0 if h < 0.015 else NEVER, "shorter than a limit between 0.01 and 0.02 s"),
+    ],
+)
+def test_steps_beyond_a_length_that_are_another_schemes_are_named(
+    first: Callable[[float], int], way: str
+) -> None:
+    """Caught: that it is stepped by another scheme, where shorter steps are the declared one's."""
+    assert by_length(first) == [f"steps {way} are by {OTHER}, not by {BY.scheme.name}"]
+
+
+def test_runs_that_no_length_sorts_are_not_said_to_be_by_length() -> None:
+    assert by_length(lambda h: 0) == []
+    assert by_length(lambda h: NEVER) == []
+    assert by_length(lambda h: 0 if h == 0.02 else NEVER) == []
+    assert by_length(lambda h: 3 if h > 0.015 else NEVER) == []

@@ -26,6 +26,7 @@ from omegadot.diagnosis.stepping.slips.first_step import first_step_causes
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
+from omegadot.diagnosis.stepping.slips.scheme_by_length import scheme_by_length
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.slips.switched import switched
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
@@ -92,6 +93,7 @@ def _searches(
         yield lambda: stage_slips(integrator, by, chosen)
         yield lambda: solved_causes(by, runs, declared)
         return
+    yield lambda: scheme_by_length(by, runs)
     yield lambda: switched(by, runs)
     yield lambda: between_steps(by, runs)
     yield lambda: first_step_causes(by, runs)
