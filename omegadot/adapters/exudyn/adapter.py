@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from omegadot.adapters.exudyn.axes import Axes
 from omegadot.adapters.exudyn.integrators import Plan, declared_integrators, plan_of
 from omegadot.adapters.exudyn.joint import ExudynJoint, coordinates, states
 from omegadot.adapters.exudyn.model import ExudynModel
@@ -47,6 +48,7 @@ CONVENTIONS = (
     "inverse dynamics is M q'' - f, of the solver's mass matrix and right-hand side",
 )
 SWITCHED_OFF = (
+    "the body's axes as the node's: they are exchanged, as a turn near none loses half its digits",
     "relativeTolerance of error-controlled solvers, which scales the tolerance with coordinates "
     "and rates with their signs, so that it vanishes or grows where these are negative",
     "the tolerances of 1e-8 and 1e-10 of Newton's iterations: 1e-12",
@@ -69,6 +71,7 @@ class ExudynAdapter(OneJointAdapter):
         engine.config.printToConsole = False
         self._engine = engine
         self._setup: Setup = setup
+        self._axes = Axes(turned=setup == "physics")
 
     @property
     def description(self) -> Description:
@@ -87,13 +90,13 @@ class ExudynAdapter(OneJointAdapter):
     def _built(self, system: System, via: Format | Literal[""]) -> ExudynJoint:
         self._system = system
         self._models: dict[Kind, ExudynModel] = {}
-        undriven = ExudynModel(self._engine, system, "rotation-vector", driven=False)
+        undriven = ExudynModel(self._engine, system, "rotation-vector", self._axes, False)
         return ExudynJoint(self._engine, self._model("rotation-vector"), undriven)
 
     def _model(self, kind: Kind) -> ExudynModel:
         """The model with this kind of node, which is kept."""
         if kind not in self._models:
-            self._models[kind] = ExudynModel(self._engine, self._system, kind)
+            self._models[kind] = ExudynModel(self._engine, self._system, kind, self._axes)
         return self._models[kind]
 
     def forward_dynamics(self, states: State) -> Acceleration:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from omegadot.adapters.exudyn.nodes import Kind
-from omegadot.adapters.protocol import Integrator
+from omegadot.adapters.protocol import Integrator, Knob
 
 CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
 # Residual, in parts of the first, to which a step solves its equation in the setup "physics".
@@ -17,6 +17,13 @@ VERLET = (
 )
 ALPHA = "spectral radius 0.9, as it comes; accelerations are kept from step to step"
 TRAPEZOIDAL = "Newmark's method with beta = 1/4, gamma = 1/2, constraints on velocities"
+
+# Name, solver, node, note.
+IMPLICIT: tuple[tuple[str, str, Kind, str], ...] = (
+    ("GeneralizedAlpha", "GeneralizedAlpha", "rotation-vector", ALPHA),
+    ("GeneralizedAlpha-EP", "GeneralizedAlpha", "euler-parameters", ALPHA),
+    ("TrapezoidalIndex2", "TrapezoidalIndex2", "rotation-vector", TRAPEZOIDAL),
+)
 
 
 @dataclass(frozen=True)
@@ -38,7 +45,7 @@ class Plan:
     one_step: bool = True
 
     @property
-    def knob(self) -> str:
+    def knob(self) -> Knob:
         """What of it can be set."""
         if not self.fixed:
             return "accuracy"
@@ -57,14 +64,8 @@ def _plans() -> dict[str, Plan]:
         "DOPRI5": Plan("DOPRI5", 5, f"Dormand and Prince's 5(4) {LIE}", fixed=False),
         "RK44-Rxyz": Plan("RK44", 4, "Kutta's method on the angles and their rates", "rxyz"),
     }
-    ends: tuple[tuple[str, Kind], ...] = (
-        ("", "rotation-vector"),
-        ("-EP", "euler-parameters"),
-        ("-Rxyz", "rxyz"),
-    )
-    for solver, note in (("GeneralizedAlpha", ALPHA), ("TrapezoidalIndex2", TRAPEZOIDAL)):
-        for end, node in ends:
-            found[solver + end] = Plan(solver, 2, note, node, explicit=False, one_step=False)
+    for name, solver, node, note in IMPLICIT:
+        found[name] = Plan(solver, 2, note, node, explicit=False, one_step=False)
     return found
 
 
@@ -83,7 +84,7 @@ def declared_integrators() -> tuple[Integrator, ...]:
             name,
             plan.scheme,
             dict.fromkeys(CHANNELS, plan.order),
-            knob=plan.knob,  # type: ignore[arg-type]
+            knob=plan.knob,
             note=plan.note,
             coordinates="origin-world",
             one_step=plan.one_step,

@@ -17,7 +17,8 @@ from omegadot.reference_impl.system import Acceleration, Array, Body, State
 def coordinates(model: ExudynModel, state: State) -> tuple[Array, Array]:
     """The node's coordinates and their rates, (6,) each, or (7,) of Euler parameters."""
     attitude, turning = model.node_kind.given(
-        normalize(np.array(state.orientation, float)), np.array(state.angular_velocity, float)
+        model.axes.of_node(normalize(np.array(state.orientation, float))),
+        model.axes.in_node(np.array(state.angular_velocity, float)),
     )
     place, moving = np.zeros((2, 3))
     if model.system.load.pivot is None:
@@ -30,6 +31,7 @@ def states(model: ExudynModel, rows: Array) -> State:
     """The states of coordinates with their rates, (n, 12) or (n, 14)."""
     places, rates = np.split(rows, 2, axis=-1)
     q, w = model.node_kind.read(places[:, 3:], rates[:, 3:])
+    q, w = model.axes.of_body(q), model.axes.in_body(w)
     found = State(q, w, places[:, :3], rates[:, :3])
     if model.system.load.pivot is not None:
         return place_on_pivot(model.system, found)
@@ -60,18 +62,20 @@ class ExudynJoint:
 
     def get_state(self) -> State:
         """The state by Exudyn's own kinematics."""
-        node, kinds = self.model.node, self._kinds
+        node, kinds, axes = self.model.node, self._kinds, self.model.axes
         turned = self.model.mbs.GetNodeOutput(node, kinds.RotationMatrix, self._now)
         spin = self.model.mbs.GetNodeOutput(node, kinds.AngularVelocityLocal, self._now)
         quaternion = np.roll(Rotation.from_matrix(turned.reshape(3, 3)).as_quat(), 1)
         position, velocity = self._at_center(kinds.Position), self._at_center(kinds.Velocity)
-        return State(quaternion, np.array(spin), position, velocity)
+        return State(axes.of_body(quaternion), axes.in_body(np.array(spin)), position, velocity)
 
     def _at_center(self, kind: Any) -> Array:
         """What Exudyn has of the centre of mass, in world axes."""
         model = self.model
         return np.array(
-            model.mbs.GetObjectOutputBody(model.body, kind, model.center.tolist(), self._now)
+            model.mbs.GetObjectOutputBody(
+                model.body, kind, model.axes.in_node(model.center).tolist(), self._now
+            )
         )
 
     def forward(self, state: State) -> tuple[Array, Array]:
@@ -83,7 +87,7 @@ class ExudynJoint:
         self.set_state(state)
         self._begin(self.model)
         found = np.array(self.model.mbs.systemData.GetODE2Coordinates_tt())
-        return found[3:6], self._at_center(self._kinds.Acceleration)
+        return self.model.axes.in_body(found[3:6]), self._at_center(self._kinds.Acceleration)
 
     def _begin(self, model: ExudynModel) -> Any:
         solver = self._exudyn.MainSolverImplicitSecondOrder()
@@ -106,10 +110,12 @@ class ExudynJoint:
         lifted = cross(wanted.angular, model.center) + cross(w, cross(w, model.center))
         held = model.system.load.pivot is not None
         moving = np.zeros(3) if held else wanted.linear - rotate(q, lifted)
-        found = mass @ np.concatenate((moving, wanted.angular)) - acting
+        known = np.concatenate((moving, model.axes.in_node(wanted.angular)))
+        found = mass @ known - acting
+        torque = model.axes.in_body(found[3:])
         if held:
-            return found[3:]
-        return found[3:] - cross(model.center, rotate_inverse(q, found[:3]))
+            return torque
+        return torque - cross(model.center, rotate_inverse(q, found[:3]))
 
 
 def place(exudyn: Any, model: ExudynModel, state: State) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.exudyn.axes import Axes
 from omegadot.adapters.exudyn.nodes import NODES, Kind
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, System
@@ -24,14 +25,16 @@ ROWS, COLUMNS = [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]
 class ExudynModel:
     """mbs, node and body are Exudyn's system and the indices of its items.
 
-    driven: whether damping and applied torques act. Coordinates are those of `nodes`.
+    axes: of the node, and of the body in Exudyn.  driven: whether damping and applied torques act.
+    Coordinates are those of `nodes`.
     """
 
-    def __init__(self, exudyn: Any, system: System, kind: Kind, driven: bool = True) -> None:
+    def __init__(
+        self, exudyn: Any, system: System, kind: Kind, axes: Axes, driven: bool = True
+    ) -> None:
         self._items: Any = exudyn.itemInterface
         self.kinds: Any = exudyn.OutputVariableType
-        self.system, self.kind = system, kind
-        self.node_kind = NODES[kind]
+        self.system, self.axes, self.node_kind = system, axes, NODES[kind]
         pivot = system.load.pivot
         self.origin = np.zeros(3) if pivot is None else np.array(pivot, float)
         self.center = np.array(system.body.center_of_mass, float) - self.origin
@@ -52,10 +55,11 @@ class ExudynModel:
     def _body(self) -> Any:
         body = self.system.body
         about = np.array(body.inertia, float) + parallel_axis(body.mass, self.center)
+        about = self.axes.tensor_in_node(about)
         made = self._items.ObjectRigidBody(
             mass=float(body.mass),
             inertia=about[ROWS, COLUMNS].tolist(),
-            centerOfMass=self.center.tolist(),
+            centerOfMass=self.axes.in_node(self.center).tolist(),
             nodeNumber=self.node,
         )
         return self.mbs.AddObject(made)
@@ -69,7 +73,9 @@ class ExudynModel:
         torques = ((load.torque_body, True), (load.torque_world, False))
         for torque, fixed in torques if driven else ():
             if np.any(torque):
-                given = {"loadVector": np.array(torque, float).tolist(), "bodyFixed": fixed}
+                acting = np.array(torque, float)
+                acting = self.axes.in_node(acting) if fixed else acting
+                given = {"loadVector": acting.tolist(), "bodyFixed": fixed}
                 mbs.AddLoad(items.LoadTorqueVector(markerNumber=self._at(self.body), **given))
         if driven and load.damping:
             ground = mbs.AddObject(items.ObjectGround())
@@ -106,8 +112,9 @@ class ExudynModel:
     def read_back(self) -> Body:
         """Mass, centre of mass and inertia about it, as the body has them."""
         held = self.mbs.GetObject(self.body)
-        mass, center = float(held["mass"]), np.array(held["centerOfMass"], float)
+        mass = float(held["mass"])
+        center = self.axes.in_body(np.array(held["centerOfMass"], float))
         inertia = np.empty((3, 3))
         inertia[ROWS, COLUMNS] = inertia[COLUMNS, ROWS] = held["inertia"]
-        about_center = inertia - parallel_axis(mass, center)
+        about_center = self.axes.tensor_in_body(inertia) - parallel_axis(mass, center)
         return Body(np.array(mass), center + self.origin, about_center)
