@@ -128,13 +128,7 @@ class ExudynAdapter(OneJointAdapter):
         times, start = np.array(kept) * timestep, np.hstack(coordinates(model, initial))
         if steps == 0 or not is_finite(start):
             rows, seconds = np.full((len(kept), len(start)), np.nan), 0.0
-        elif not plan.fixed:
-            own = settings_of(self._engine, plan, self._setup)
-            if self._setup == "physics":
-                own.timeIntegration.relativeTolerance = 0.0
-            found = run_by_accuracy(self._engine, model, own, initial, times, accuracy or 1e-8)
-            rows, seconds = found
-        else:
+        elif plan.fixed:
             own = settings_of(self._engine, plan, self._setup)
             angles = plan.node == "rxyz"  # all steps are looked at
             taken = list(range(steps + 1)) if angles else kept
@@ -142,6 +136,11 @@ class ExudynAdapter(OneJointAdapter):
             if angles:
                 refuse_unresolved(rows, timestep)
                 rows = rows[kept]
+        else:
+            own = settings_of(self._engine, plan, self._setup, accuracy)
+            ends = np.arange(steps + 1) * timestep  # where steps have to end
+            rows, seconds = run_by_accuracy(self._engine, model, own, initial, ends)
+            rows = rows[kept]
         rows[0] = start
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
             return Trajectory(times, states(model, rows), seconds)

@@ -54,6 +54,10 @@ class Plan:
 
 def _plans() -> dict[str, Plan]:
     found = {
+        name: Plan(solver, 2, note, node, explicit=False, one_step=False)
+        for name, solver, node, note in IMPLICIT
+    }
+    return found | {
         "ExplicitEuler": Plan("ExplicitEuler", 1, f"explicit Euler {LIE}"),
         "ExplicitMidpoint": Plan("ExplicitMidpoint", 2, f"the explicit midpoint rule {LIE}"),
         "RK33": Plan("RK33", 3, f"Heun's method of order 3 {LIE}"),
@@ -64,9 +68,6 @@ def _plans() -> dict[str, Plan]:
         "DOPRI5": Plan("DOPRI5", 5, f"Dormand and Prince's 5(4) {LIE}", fixed=False),
         "RK44-Rxyz": Plan("RK44", 4, "Kutta's method on the angles and their rates", "rxyz"),
     }
-    for name, solver, node, note in IMPLICIT:
-        found[name] = Plan(solver, 2, note, node, explicit=False, one_step=False)
-    return found
 
 
 PLANS = _plans()

@@ -21,8 +21,8 @@ SHORTEST = 1e-9  # of a sample's spacing: the least step of an error-controlled 
 ROOT_OF_LARGEST = 2.0**512  # the least number whose square is not finite
 
 
-def settings_of(exudyn: Any, plan: Plan, setup: Setup) -> Any:
-    """What all runs of an integrator have in common."""
+def settings_of(exudyn: Any, plan: Plan, setup: Setup, accuracy: float | None = None) -> Any:
+    """What all runs of an integrator have in common, at an accuracy or at Exudyn's own."""
     found = exudyn.SimulationSettings()
     found.solution.file.write = False
     own = found.timeIntegration
@@ -30,6 +30,10 @@ def settings_of(exudyn: Any, plan: Plan, setup: Setup) -> Any:
     own.adaptiveStep = own.automaticStepSize = not plan.fixed
     if setup == "physics" and not plan.explicit:
         own.newton.relativeTolerance = own.newton.absoluteTolerance = SOLVES
+    if accuracy:
+        own.absoluteTolerance = own.relativeTolerance = accuracy
+    if setup == "physics" and not plan.fixed:
+        own.relativeTolerance = 0.0
     return found
 
 
@@ -65,11 +69,11 @@ def run_fixed(
 
 
 def run_by_accuracy(
-    exudyn: Any, model: ExudynModel, settings: Any, start: State, times: Array, accuracy: float
+    exudyn: Any, model: ExudynModel, settings: Any, start: State, times: Array
 ) -> tuple[Array, float]:
     """The same at these times in s, of which the first is 0."""
     own, data, mbs = settings.timeIntegration, model.mbs.systemData, model.mbs
-    own.absoluteTolerance, own.numberOfSteps = accuracy, 1
+    own.numberOfSteps = 1
     settings.solution.sensors.active = False
     place(exudyn, model, start)
     kind = exudyn.ConfigurationType.Initial
