@@ -15,7 +15,6 @@ from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import Kind
 from omegadot.adapters.exudyn.stepping import (
     is_finite,
-    refuse_unresolved,
     run_by_accuracy,
     run_fixed,
     settings_of,
@@ -130,12 +129,10 @@ class ExudynAdapter(OneJointAdapter):
             rows, seconds = np.full((len(kept), len(start)), np.nan), 0.0
         elif plan.fixed:
             own = settings_of(self._engine, plan, self._setup)
-            angles = plan.node == "rxyz"  # all steps are looked at
-            taken = list(range(steps + 1)) if angles else kept
+            each = plan.node == "rxyz"  # its angles are looked at after every step
+            taken = list(range(steps + 1)) if each else kept
             rows, seconds = run_fixed(self._engine, model, own, initial, timestep, taken)
-            if angles:
-                refuse_unresolved(rows, timestep)
-                rows = rows[kept]
+            rows = rows[kept] if each else rows
         else:
             own = settings_of(self._engine, plan, self._setup, accuracy)
             ends = np.arange(steps + 1) * timestep  # where steps have to end

@@ -14,6 +14,7 @@ import numpy as np
 from omegadot.adapters.exudyn.integrators import SOLVES, Plan
 from omegadot.adapters.exudyn.joint import place
 from omegadot.adapters.exudyn.model import ExudynModel
+from omegadot.adapters.exudyn.nodes import NODES
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.system import Array, State
 
@@ -42,7 +43,8 @@ def run_fixed(
 ) -> tuple[Array, float]:
     """Coordinates with their rates (n, k) at these steps, and the s that the steps took.
 
-    A run that is no longer finite, or that Exudyn gives up, has NaN in its later rows.
+    A run that is no longer finite has NaN in its later rows.  Raises what Exudyn raises, and
+    UnsupportedError as `refuse_unresolved` does.
     """
     steps, own = kept[-1], settings.timeIntegration
     own.numberOfSteps, own.endTime = steps, steps * h
@@ -57,6 +59,8 @@ def run_fixed(
         failed = error
     seconds = perf_counter() - began
     times, logged = model.logged()
+    if model.node_kind is NODES["rxyz"]:
+        refuse_unresolved(logged, h)
     if failed and is_finite(logged[-1]):
         raise failed
     rows = np.full((len(kept), logged.shape[1]), np.nan)
