@@ -44,7 +44,7 @@ def run_fixed(
     """Coordinates with their rates (n, k) at these steps, and the s that the steps took.
 
     A run that is no longer finite has NaN in its later rows.  Raises what Exudyn raises, and
-    UnsupportedError as `refuse_unresolved` does.
+    UnsupportedError where it takes no step, and as `refuse_unresolved` does.
     """
     steps, own = kept[-1], settings.timeIntegration
     own.numberOfSteps, own.endTime = steps, steps * h
@@ -61,6 +61,11 @@ def run_fixed(
     times, logged = model.logged()
     if model.node_kind is NODES["rxyz"]:
         refuse_unresolved(logged, h)
+    if failed and len(times) == 1:
+        raise UnsupportedError(
+            f"Newton's iterations of Exudyn's {settings.timeIntegration.solverType.name} do not "
+            f"converge in the first step of {h} s; take smaller steps"
+        ) from failed
     if failed and is_finite(logged[-1]):
         raise failed
     rows = np.full((len(kept), logged.shape[1]), np.nan)
