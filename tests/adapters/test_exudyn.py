@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mujoco_cases import EPS, at, norm, states, system
+from mujoco_cases import EPS, PIVOT, at, norm, states, system
 
 from omegadot.adapters.exudyn.adapter import ExudynAdapter
 from omegadot.adapters.exudyn.axes import Axes
 from omegadot.adapters.exudyn.integrators import PLANS
+from omegadot.adapters.exudyn.joint import ExudynJoint
+from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import NODES
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.kinematics import at_point, place_on_pivot
@@ -136,6 +138,38 @@ def test_explicit_solvers_would_turn_a_pivoted_body_as_a_free_one(
     rate = (found.angular_velocity - start.angular_velocity) / STEP
     assert norm(rate - forward_dynamics(free, start).angular) <= SAME / STEP
     assert norm(rate - forward_dynamics(of, start).angular) > 1.0
+
+
+class OnASphericalJoint(ExudynModel):
+    """A body on a joint away from its node, which is at the body's origin."""
+
+    def _loads(self, driven: bool) -> None:
+        items, mbs = self._items, self.mbs
+        ground = mbs.AddObject(items.ObjectGround())
+        points = ((ground, np.zeros(3)), (self.body, PIVOT))
+        markers = [
+            mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=place.tolist()))
+            for body, place in points
+        ]
+        mbs.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
+
+
+def test_a_spherical_joint_has_wrong_accelerations_at_the_start() -> None:
+    """At rest and at no turn they are right: a difference quotient has some eight digits."""
+    of, free = system("full", "pivot"), system("full")
+    engine = exudyn(free)._engine
+    model = OnASphericalJoint(engine, free, "rotation-vector", Axes(turned=False))
+    joint = ExudynJoint(engine, model, model)
+
+    def off(q: Array, spin: Array) -> float:
+        state = place_on_pivot(of, State(q, spin, np.zeros(3), np.zeros(3)))
+        expected = forward_dynamics(of, state).angular
+        return float(norm(joint.forward(state)[0] - expected))
+
+    spin, turned = np.array([1.0, 2.0, 3.0]), exp_quaternion(np.array([0.5, -1.0, 1.0]))
+    assert off(turned, np.zeros(3)) <= SAME
+    assert off(NO_TURN, spin) <= 1e-6
+    assert off(turned, spin) > 1e-2
 
 
 def test_tolerances_with_signs_are_no_tolerances() -> None:

@@ -2,8 +2,8 @@
 
 The node is at the body's origin, or at the pivot. A pivot is three `ObjectConnectorCoordinate`,
 each of which holds one coordinate of the node's place at zero. With an `ObjectJointSpherical` away
-from the node the same motion results, but Exudyn takes the constraint's second derivative, and so
-the accelerations at the start, from difference quotients.
+from the node, accelerations at the start are wrong: Exudyn takes the constraint's second derivative
+from a difference quotient in the rotation vector along omega, which is not the vector's rate.
 """
 
 from __future__ import annotations
