@@ -20,11 +20,12 @@ def coordinates(model: ExudynModel, state: State) -> tuple[Array, Array]:
         model.axes.of_node(normalize(np.array(state.orientation, float))),
         model.axes.in_node(np.array(state.angular_velocity, float)),
     )
-    place, moving = np.zeros((2, 3))
+    at: Array = np.zeros(3)
+    moving: Array = np.zeros(3)
     if model.system.load.pivot is None:
         node = at_point(state, -model.center)
-        place, moving = node.position, node.linear_velocity
-    return np.concatenate((place, attitude)), np.concatenate((moving, turning))
+        at, moving = node.position, node.linear_velocity
+    return np.concatenate((at, attitude)), np.concatenate((moving, turning))
 
 
 def states(model: ExudynModel, rows: Array) -> State:
