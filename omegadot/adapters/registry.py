@@ -30,7 +30,10 @@ BUILT_IN: dict[str, str] = {
     "pinocchio": "omegadot.adapters.pinocchio.adapter:PinocchioAdapter",
     "dart": "omegadot.adapters.dart.adapter:DartAdapter",
 }
-EXTRAS: dict[str, str] = {"drake": "omegadot.adapters.drake.adapter:DrakeAdapter"}
+EXTRAS: dict[str, str] = {
+    "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
+    "exudyn": "omegadot.adapters.exudyn.adapter:ExudynAdapter",
+}
 """Engines that an extra of the same name installs: ``pip install 'omegadot[drake]'``."""
 NODE: dict[str, str] = {
     name: f"omegadot.adapters.node.adapter:{name.replace('-', '_')}" for name in NODE_ENGINES
@@ -38,7 +41,8 @@ NODE: dict[str, str] = {
 """Engines that run through Node: ``omegadot engines --install node``."""
 OPTIONAL = {**EXTRAS, **NODE}
 OURS = {**BUILT_IN, **OPTIONAL}
-_MODULES = {"drake": "pydrake"}  # of an optional engine's package, by which it is known to be there
+# The module of an optional engine, by which it is known to be there.
+_MODULES = {"drake": "pydrake", "exudyn": "exudyn"}
 
 
 class AdapterError(ValueError):

@@ -95,6 +95,19 @@ def cases(count: int, of: System, seed: int, fast: float) -> State:
     return place_on_pivot(of, states(count, seed=seed, fast=fast))
 
 
+def taken_by(adapter: Adapter, start: State) -> list[str]:
+    """The integrators that take this motion of the loaded system; the first one always does."""
+    found = []
+    for integrator in adapter.description.integrators:
+        try:
+            adapter.run(start, integrator.name, 0.01, 1, 1)
+        except UnsupportedError:
+            assert found, integrator.name
+        else:
+            found.append(integrator.name)
+    return found
+
+
 @pytest.mark.parametrize("name", ENGINES)
 def test_answers_the_protocol_and_describes_itself(name: str) -> None:
     adapter = engine(name)
@@ -108,7 +121,13 @@ def test_answers_the_protocol_and_describes_itself(name: str) -> None:
     assert len({i.name for i in reported.integrators}) == len(reported.integrators)
 
 
-PACKAGES = {"pinocchio": "pinocchio", "dart": "dartpy", "mujoco": "mujoco", "drake": "pydrake"}
+PACKAGES = {
+    "pinocchio": "pinocchio",
+    "dart": "dartpy",
+    "mujoco": "mujoco",
+    "drake": "pydrake",
+    "exudyn": "exudyn",
+}
 
 
 @pytest.mark.parametrize(
@@ -245,11 +264,11 @@ def test_no_call_leaves_anything_for_the_next(name: str) -> None:
 def test_a_run_does_not_depend_on_earlier_calls(name: str, load: str) -> None:
     of = system(load=load)
     adapter, many = loaded(name, of), cases(2, of, 7, fast=2.0)
-    names = [integrator.name for integrator in adapter.description.integrators]
+    names = taken_by(adapter, at(many, 0))
     before = adapter.run(at(many, 0), names[0], 0.01, 5, 2)
     adapter.inverse_dynamics(many, adapter.forward_dynamics(many))
     adapter.set_state(at(many, 1))
-    for other in names:
+    for other in taken_by(adapter, at(many, 1)):
         adapter.run(at(many, 1), other, 0.003, 3, 1)
     after = adapter.run(at(many, 0), names[0], 0.01, 5, 2)
     for first, second in zip(parts(before.state), parts(after.state), strict=True):
@@ -260,11 +279,11 @@ def test_a_run_does_not_depend_on_earlier_calls(name: str, load: str) -> None:
 def test_a_run_logs_the_start_each_kth_step_and_the_last(name: str) -> None:
     of = system(load="all")
     adapter, start = loaded(name, of), at(cases(1, of, 8, fast=2.0), 0)
-    for integrator in adapter.description.integrators:
-        none = adapter.run(start, integrator.name, 0.01, 0, 1)
+    for integrator in taken_by(adapter, start):
+        none = adapter.run(start, integrator, 0.01, 0, 1)
         assert np.array_equal(none.time, [0.0])
-        every = adapter.run(start, integrator.name, 0.01, 7, 1)
-        third = adapter.run(start, integrator.name, 0.01, 7, 3)
+        every = adapter.run(start, integrator, 0.01, 7, 1)
+        third = adapter.run(start, integrator, 0.01, 7, 3)
         assert np.array_equal(third.time, np.array([0, 3, 6, 7]) * 0.01)
         for first, second in zip(parts(every.state), parts(third.state), strict=True):
             assert len(second) == 4
@@ -281,10 +300,10 @@ def test_nan_comes_back_as_nan(name: str, load: str) -> None:
     of = system(load=load)
     adapter, start = loaded(name, of), at(cases(1, of, 9, fast=2.0), 0)
     broken = replace(start, angular_velocity=np.array([1.0, np.nan, 0.0]))
-    for integrator in adapter.description.integrators:
-        found = adapter.run(broken, integrator.name, 0.01, 4, 2)
-        assert np.all(np.isnan(found.state.angular_velocity[1:]).any(axis=-1)), integrator.name
-    sound = adapter.run(start, integrator.name, 0.01, 4, 2)
+    for integrator in taken_by(adapter, start):
+        found = adapter.run(broken, integrator, 0.01, 4, 2)
+        assert np.all(np.isnan(found.state.angular_velocity[1:]).any(axis=-1)), integrator
+    sound = adapter.run(start, integrator, 0.01, 4, 2)
     assert np.all(np.isfinite(sound.state.angular_velocity))
 
 

@@ -21,6 +21,7 @@ INSTALLING = (
     "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/omegadot run",
     ".venv/bin/pip install -e '.[test]' && .venv/bin/pytest",
     ".venv/bin/pip install -e '.[drake]'",
+    ".venv/bin/pip install -e '.[exudyn]'",
     ".venv/bin/omegadot engines --install node",
 )
 

@@ -13,7 +13,13 @@ from omegadot.commands.choose.requirements import Requirements
 
 PRECISION = {"float64": "double", "float32": "single"}
 # The name of a package is not that of its module: "pinocchio" is something else on PyPI.
-PACKAGES = {"mujoco": "mujoco", "pinocchio": "pin", "dart": "dartpy", "drake": "drake"}
+PACKAGES = {
+    "mujoco": "mujoco",
+    "pinocchio": "pin",
+    "dart": "dartpy",
+    "drake": "drake",
+    "exudyn": "exudyn",
+}
 # More than any minor version of Python has had.
 MOST_RELEASES = 40
 

@@ -1,0 +1,1 @@
+"""Exudyn behind the protocol."""

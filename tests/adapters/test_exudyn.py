@@ -1,0 +1,236 @@
+"""What Exudyn's solvers step, and what of Exudyn is not as a reader may expect."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mujoco_cases import EPS, PIVOT, at, norm, states, system
+
+from omegadot.adapters.exudyn.adapter import ExudynAdapter
+from omegadot.adapters.exudyn.axes import Axes
+from omegadot.adapters.exudyn.integrators import PLANS
+from omegadot.adapters.exudyn.joint import ExudynJoint
+from omegadot.adapters.exudyn.model import ExudynModel
+from omegadot.adapters.exudyn.nodes import NODES
+from omegadot.adapters.protocol import UnsupportedError
+from omegadot.reference_impl.kinematics import at_point, place_on_pivot
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import attitude_angle, exp_quaternion, turn_in_body
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+
+pytest.importorskip("exudyn")
+
+STEP, STEPS = 0.01, 20
+# A step of a dozen operations, of rates that a step may double: the runs last 0.2 s.
+SAME = 64 * EPS * STEPS
+EXPLICIT = sorted(name for name, plan in PLANS.items() if plan.explicit)
+NO_TURN = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def exudyn(of: System, setup: Any = "physics") -> ExudynAdapter:
+    adapter = ExudynAdapter(setup)
+    adapter.load(of)
+    return adapter
+
+
+def a_start(of: System) -> State:
+    return at(place_on_pivot(of, states(1, seed=0, far=1.0, fast=2.0)), 0)
+
+
+def apart(one: State, other: State) -> float:
+    """The largest distance between two states, of parts of the size of one."""
+    pairs = [(one.position, other.position), (one.linear_velocity, other.linear_velocity)]
+    pairs.append((one.angular_velocity, other.angular_velocity))
+    sizes = [float(norm(a - b) / max(1.0, float(norm(b)))) for a, b in pairs]
+    return max(float(attitude_angle(one.orientation, other.orientation)), *sizes)
+
+
+@pytest.mark.parametrize("load", ["none", "all"])
+def test_rk44_is_the_method_of_munthe_kaas(load: str) -> None:
+    of = system("full", load)
+    start, scheme = a_start(of), SCHEMES["munthe-kaas-rk4"]
+    _, expected = step_body(scheme, of, start, STEP, STEPS, STEPS, coordinates="origin-world")
+    found = exudyn(of).run(start, "RK44", STEP, STEPS, STEPS).state[-1]
+    assert apart(found, expected[-1]) <= SAME
+
+
+def moved(of: System, state: State, spin: Array, velocity: Array, h: float) -> State:
+    """A step of the origin's place and of the attitude, by these velocities of the origin."""
+    origin = at_point(state, -of.body.center_of_mass)
+    q = turn_in_body(state.orientation, spin, h)
+    return State(q, spin, origin.position + h * velocity, velocity)
+
+
+@pytest.mark.parametrize("load", ["none", "all"])
+def test_explicit_euler_turns_by_the_omega_before(load: str) -> None:
+    of = system("full", load)
+    start = a_start(of)
+    origin = at_point(start, -of.body.center_of_mass)
+    place = moved(of, start, start.angular_velocity, origin.linear_velocity, STEP)
+    spin = start.angular_velocity + STEP * forward_dynamics(of, start).angular
+    found = exudyn(of).run(start, "ExplicitEuler", STEP, 1, 1).state[-1]
+    assert attitude_angle(found.orientation, place.orientation) <= SAME
+    assert norm(found.angular_velocity - spin) <= SAME
+    assert norm(at_point(found, -of.body.center_of_mass).position - place.position) <= SAME
+
+
+def test_velocity_verlet_takes_omega_dot_of_half_a_step_before() -> None:
+    """So that it is of order 1 where forces depend on velocities, as the gyroscopic torque does."""
+    of = system("full", center=np.zeros(3))
+    start = a_start(of)
+    first = start.angular_velocity + 0.5 * STEP * forward_dynamics(of, start).angular
+    turned = turn_in_body(start.orientation, first, STEP)
+    half = State(turned, first, start.position, start.linear_velocity)
+    spin = first + 0.5 * STEP * forward_dynamics(of, half).angular
+    found = exudyn(of).run(start, "VelocityVerlet", STEP, 1, 1).state[-1]
+    assert norm(found.angular_velocity - spin) <= SAME
+    assert attitude_angle(found.orientation, turned) <= SAME
+
+
+@pytest.mark.parametrize("name", sorted(set(PLANS) - {"RK44-Rxyz"}))
+def test_axes_that_are_exchanged_change_rounding_alone(name: str) -> None:
+    """Three angles are left out: they are other coordinates there, with other errors."""
+    of = system("full", "all")
+    start, plan = a_start(of), PLANS[name]
+    accuracy = None if plan.fixed else 1e-9
+    one, other = (exudyn(of, setup) for setup in ("physics", "as-shipped"))
+    other._axes = Axes(turned=False)
+    other._setup = "physics"
+    other.load(of)
+    found = [a.run(start, name, STEP, STEPS, STEPS, accuracy).state[-1] for a in (one, other)]
+    # an estimate of the error takes coordinates one by one
+    assert apart(*found) <= (SAME if plan.fixed and plan.explicit else 1e-9)
+
+
+def turn_lost(setup: Any) -> float:
+    """The error of an attitude after a turn of 1e-6 rad, in parts of it."""
+    of = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),), Load())
+    spin = np.array([1.0, 2.0, 2.0]) / 3
+    start = State(NO_TURN, spin, np.zeros(3), np.zeros(3))
+    found = exudyn(of, setup).run(start, "RK44", 1e-6, 1, 1).state[-1]
+    return float(attitude_angle(found.orientation, exp_quaternion(1e-6 * spin))) / 1e-6
+
+
+def test_a_turn_near_none_loses_its_digits_in_the_axes_as_shipped() -> None:
+    """The angle comes from its cosine, which is 1 - 5e-13 there, and known to eps."""
+    assert turn_lost("physics") <= 64 * EPS / 1e-6
+    assert turn_lost("as-shipped") > 1e-6
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_a_pivot_off_the_centre_of_mass_is_refused_by_explicit_solvers(name: str) -> None:
+    of = system("full", "pivot_gravity")
+    with pytest.raises(UnsupportedError, match="centre of mass only"):
+        exudyn(of).run(a_start(of), name, STEP, 1, 1)
+
+
+def test_explicit_solvers_would_turn_a_pivoted_body_as_a_free_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(ExudynAdapter, "_refuse_pivot", lambda *_: None)
+    of, free = system("full", "pivot_gravity"), system("full", "gravity")
+    start = a_start(of)
+    found = exudyn(of).run(start, "ExplicitEuler", STEP, 1, 1).state[-1]
+    rate = (found.angular_velocity - start.angular_velocity) / STEP
+    assert norm(rate - forward_dynamics(free, start).angular) <= SAME / STEP
+    assert norm(rate - forward_dynamics(of, start).angular) > 1.0
+
+
+class OnASphericalJoint(ExudynModel):
+    """A body on a joint away from its node, which is at the body's origin."""
+
+    def _loads(self, driven: bool) -> None:
+        items, mbs = self._items, self.mbs
+        ground = mbs.AddObject(items.ObjectGround())
+        points = ((ground, np.zeros(3)), (self.body, PIVOT))
+        markers = [
+            mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=place.tolist()))
+            for body, place in points
+        ]
+        mbs.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
+
+
+def test_a_spherical_joint_has_wrong_accelerations_at_the_start() -> None:
+    """At rest and at no turn they are right: a difference quotient has some eight digits."""
+    of, free = system("full", "pivot"), system("full")
+    engine = exudyn(free)._engine
+    model = OnASphericalJoint(engine, free, "rotation-vector", Axes(turned=False))
+    joint = ExudynJoint(engine, model, model)
+
+    def off(q: Array, spin: Array) -> float:
+        state = place_on_pivot(of, State(q, spin, np.zeros(3), np.zeros(3)))
+        expected = forward_dynamics(of, state).angular
+        return float(norm(joint.forward(state)[0] - expected))
+
+    spin, turned = np.array([1.0, 2.0, 3.0]), exp_quaternion(np.array([0.5, -1.0, 1.0]))
+    assert off(turned, np.zeros(3)) <= SAME
+    assert off(NO_TURN, spin) <= 1e-6
+    assert off(turned, spin) > 1e-2
+
+
+def test_tolerances_with_signs_are_no_tolerances() -> None:
+    """At x = -1 and equal tolerances the scale of an error is zero, and no step is rejected."""
+    of = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 2.0, 2.8])),), Load())
+    place = np.array([-1.0, 0.0, 0.0])
+    start = State(NO_TURN, np.array([1.0, 2.0, 3.0]), place, np.zeros(3))
+    ends = [
+        [exudyn(of, setup).run(start, "ODE23", 0.5, 1, 1, t).state[-1] for t in (1e-3, 1e-9)]
+        for setup in ("physics", "as-shipped")
+    ]
+    assert apart(*ends[0]) > 1e-6
+    assert apart(*ends[1]) == 0.0
+
+
+def test_angles_near_their_singularity_are_refused() -> None:
+    """Steps of 9 degrees: the last one is as long as the singularity is away."""
+    about_y = np.array([0.0, 0.0, 1.0])  # of the body: the second angle alone changes
+    start = State(NO_TURN, np.pi / 2 * about_y, np.zeros(3), np.zeros(3))
+    sphere = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),), Load())
+    adapter = exudyn(sphere)
+    assert np.all(np.isfinite(adapter.run(start, "RK44-Rxyz", 0.1, 8, 8).state.orientation))
+    with pytest.raises(UnsupportedError, match="three angles"):
+        adapter.run(start, "RK44-Rxyz", 0.1, 12, 12)
+
+
+@pytest.mark.parametrize("kind", sorted(NODES))
+def test_coordinates_of_every_node_come_back(kind: Any) -> None:
+    many = states(20, seed=1, far=1.0, fast=2.0)
+    for row in range(20):
+        state = at(many, row)
+        given, rates = NODES[kind].given(state.orientation, state.angular_velocity)
+        q, w = NODES[kind].read(given[None], rates[None])
+        far = 1 / abs(np.cos(given[1])) if kind == "rxyz" else 1.0
+        assert attitude_angle(q[0], state.orientation) <= 64 * EPS * far
+        assert norm(w[0] - state.angular_velocity) <= 64 * EPS * far * norm(state.angular_velocity)
+
+
+def test_a_run_that_overflows_ends_in_nan() -> None:
+    fast = State(NO_TURN, np.full(3, 1e200), np.zeros(3), np.zeros(3))
+    adapter = exudyn(system("full"))
+    for name, plan in PLANS.items():
+        found = adapter.run(fast, name, 1.0, 2, 1, None if plan.fixed else 1e-3).state
+        assert not np.all(np.isfinite(found.angular_velocity[-1])), name
+
+
+def test_it_describes_itself() -> None:
+    own = ExudynAdapter().description
+    assert {i.knob for i in own.integrators} == {"timestep", "accuracy", "fixed-accuracy"}
+    assert all(i.note for i in own.integrators)
+    assert own.switched_off
+    assert not ExudynAdapter("as-shipped").description.switched_off
+    native = ExudynAdapter().native()
+    assert native["conventions"]["rotation vector's rate"] == "omega in body axes"
+    assert native["defaults"]["timeIntegration generalizedAlpha.spectralRadius"] == "0.9"
+
+
+def test_inverse_dynamics_leaves_gravity_out_and_damping_in() -> None:
+    of, plain = system("full", "pivot_all"), system("full", "pivot_gravity")
+    start = at(states(1, seed=2, fast=2.0), 0)
+    one = State(*(np.array(v)[None] for v in vars(place_on_pivot(of, start)).values()))
+    wanted = Acceleration(np.ones((1, 3)), np.zeros((1, 3)))
+    loaded = exudyn(of).inverse_dynamics(one, wanted)
+    assert np.array_equal(loaded, exudyn(plain).inverse_dynamics(one, wanted))
