@@ -133,6 +133,10 @@ def test_some_of_a_block_have_a_torque_in_each_frame(seed: int) -> None:
 
 def test_a_second_torque_changes_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
     """Caught: one that is drawn, so that all that is drawn after it changes."""
+    held, driven = random_scenario(0, 5), random_scenario(0, 8)
+    assert (held.body.mass, held.run.duration) == (11862.83, 0.09867795795)
+    assert held.initial.angular_velocity == (-118.551, 189.853, 78.324)
+    assert [one.value for one in driven.load.torque] == [(2.68415e-11, -8.1065e-11, 4.32366e-11)]
     found = [random_scenario(0, index).to_dict() for index in range(BLOCK)]
     monkeypatch.setattr(random_systems, "drawn", lambda *one: replace(drawn(*one), both=False))
     for index, one in enumerate(found):
