@@ -182,6 +182,10 @@ SIZES = tuple(
     [
         (replaced, ("the moment of inertia zz is that of xx",)),
         (
+            lambda t: t * (1.0 - 2.0 * np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]])),
+            ("the products of inertia xy and yz have the wrong sign",),
+        ),
+        (
             lambda t: t + np.diag([0.5 * (t[1, 1] - t[0, 0]), 0.5 * (t[0, 0] - t[1, 1]), 0.0]),
             ("the moments of inertia xx and yy are both their mean",),
         ),
@@ -194,7 +198,7 @@ SIZES = tuple(
             ("the diagonal of the inertia is held above 0.6 kg m^2",),
         ),
     ],
-    ids=("replaced", "mean", "digits", "floor"),
+    ids=("replaced", "two signs", "mean", "digits", "floor"),
 )
 def test_another_tensor_is_said_in_relation_to_the_requested_one(
     change: Change, phrases: tuple[str, ...], parts: tuple[str, ...]

@@ -51,6 +51,11 @@ def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:
             text = f"the product of inertia {name} {what}"
             signs = [factor if k == index else 1.0 for k in range(3)]
             yield text, _symmetric(tensor, partial(_times, signs))
+    for index in range(3):
+        one, other = (names[k] for k in range(3) if k != index)
+        text = f"the products of inertia {one} and {other} have the wrong sign"
+        signs = [1.0 if k == index else -1.0 for k in range(3)]
+        yield text, _symmetric(tensor, partial(_times, signs))
     for index, name in enumerate(names):
         kept = [1.0 if k == index else 0.0 for k in range(3)]
         text = f"of the products of inertia only {name} is kept"
