@@ -7,7 +7,7 @@ is started again and the next request goes on.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -115,6 +115,17 @@ class Driver:
         self._tried: set[str] = set()
         self._refused: dict[str, Answer] = {}
         self._declared: tuple[Integrator, ...] = ()
+        self._primed = False
+
+    def prime(self, others: Sequence[Case]) -> None:
+        """Before any other, load the first of these systems that the engine takes, once.
+
+        What is kept of a first system is then none of the first case's, which it would be right on.
+        """
+        if not self._primed:
+            self._primed = True
+            any(self._load(other).ok for other in others)
+            self._timeouts_in_a_row = 0  # no case was asked for
 
     def _send(self, call: Callable[[], Answer]) -> Answer:
         """What a call to the worker comes to, when its turn has come."""

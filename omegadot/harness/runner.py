@@ -34,7 +34,7 @@ from omegadot.harness.outcome import (
     tasks_of,
 )
 from omegadot.harness.plan import Engine
-from omegadot.harness.requests.repeats import request_again
+from omegadot.harness.requests.repeats import OTHERS, request_again
 from omegadot.harness.requests.step_probes import probe_steps
 from omegadot.harness.requests.truth_requests import (
     Companions,
@@ -127,6 +127,8 @@ class Runner:
             self.on_advance(tasks_of(engine, case))
             return CaseResult()
         evaluation_states = evaluation_states_of(case, truth, self.request.seed)
+        if engine.name not in ("exact", "reference"):
+            driver.prime(OTHERS)
         result = driver.evaluate_equations(case, evaluation_states)
         if engine.name == "exact":
             self.on_advance(1)

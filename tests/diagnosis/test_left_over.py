@@ -138,6 +138,11 @@ WRONG: dict[str, tuple[Engine, tuple[Case, ...], str]] = {
     )
 }
 WRONG |= {
+    "first gravity": (
+        of_load(lambda loads: {"gravity": loads[0].gravity}),
+        CASES[1:],
+        "the gravity of the first system that was loaded is kept for all",
+    ),
     "mass": (
         of_body(lambda s: {"mass": s[-2:][0].body.mass}),
         CASES,

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from omegadot.diagnosis.equations.kept_donors import (
     FOUND_BY,
+    first,
     first_with_same,
     last,
     last_of_any,
@@ -52,6 +53,8 @@ def _every() -> Iterator[Kept]:
             yield Kept(part.name, one, part, last_where_missing(part))
             one = f"{part.none}, that of a system loaded before is kept: of the last that had any"
             yield Kept(part.name, one, part, last_of_any(part))
+        one = f"the {part.name} of the first system that was loaded is kept for all"
+        yield Kept(part.name, one, part, first, lasting=True)
         by_key = part not in LOADS and part != BODY[-1]
         yield from _whenever(part.name, part, [k for k in FOUND_BY if by_key and k != part.name])
     for what, of_form in MADE.items():

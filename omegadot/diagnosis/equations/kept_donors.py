@@ -54,6 +54,11 @@ def last(_: System, before: LoadedBefore) -> System | None:
     return before.last
 
 
+def first(_: System, before: LoadedBefore) -> System | None:
+    """The very first that was loaded."""
+    return before.systems[0] if before.count else None
+
+
 def first_with_same(key: str, support: bool) -> Donor:
     """By one of `FOUND_BY`. support: and by being pivoted or free."""
 

@@ -56,7 +56,8 @@ class Kept:
 
     of_form: the parts of the equation that are kept, where what they were made of is not.
     key: what the system that it was kept of has in common with this one; "" where nothing.
-    plainer: texts of what says less, and is as good where both make the same answers.
+    plainer: texts of what says less, and is as good where both make the same answers.  lasting:
+    whether it is the same for all systems, so that it has one value.
     """
 
     what: str
@@ -66,6 +67,7 @@ class Kept:
     of_form: tuple[str, ...] = ()
     key: str = ""
     plainer: tuple[str, ...] = ()
+    lasting: bool = False
 
     def vague(self, key: str) -> str:
         """Where it is open when it is kept, but that what has this in common is."""

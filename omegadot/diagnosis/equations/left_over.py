@@ -121,6 +121,8 @@ def _holds(one: Kept, seen: Sequence[_Seen], wrong: Sequence[_Seen]) -> bool:
     if any(s.evidence.system is system for s in wrong for system in right):
         return True
     values = [one.value(s.evidence.system, s.before) for s in wrong]
+    if one.lasting:  # the numbers of one system, of which no other constant has several
+        return bool(np.count_nonzero(values[0]) > 1)
     return any(_differ(values[0], other) for other in values[1:])
 
 
