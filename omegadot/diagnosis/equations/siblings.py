@@ -79,7 +79,8 @@ class Siblings:
             return [f"{AFTER_ANOTHER}: its {named}"]
         if len(found) == 1 and all(texts):
             return [f"either {found[0]}, or {AFTER_ANOTHER}" if kept else found[0]]
-        return [f"either forward dynamics are wrong with another {named}, or {AFTER_ANOTHER}"]
+        other = f"another {named}" if failing else "slightly other numbers"
+        return [f"either forward dynamics are wrong with {other}, or {AFTER_ANOTHER}"]
 
     def left_over(self, case: Case) -> str:
         """What is kept of a system, if it makes all that is wrong; "" where nothing does."""

@@ -111,7 +111,7 @@ def _grid(requested: float, taken: float) -> str:
 
 
 def damped(reported: ReportedRun) -> str:
-    """A damping that was not requested."""
+    """Another damping than the one requested."""
     system, yardstick = reported.case.system, reported.truth.yardstick
 
     def stepped(run: ReportedRun, damping: float) -> State:
@@ -122,4 +122,10 @@ def damped(reported: ReportedRun) -> str:
     found = search(reported, stepped, 1e-6 * scale)
     if found is None or found == 0.0:
         return ""
-    return f"a damping of {written(found, 3)} N m s/rad acts in the steps that was not requested"
+    requested = float(system.load.damping)
+    if not requested:
+        return (
+            f"a damping of {written(found, 3)} N m s/rad acts in the steps that was not requested"
+        )
+    shown, due = (f"{written(x, 3)} N m s/rad" for x in (requested + found, requested))
+    return f"the damping that acts in the steps is {shown}, where {due} was requested"

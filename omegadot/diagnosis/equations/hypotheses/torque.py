@@ -98,6 +98,7 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
                 "torque",
                 given(order, lambda k, one: applied(one, lambda t: t[list(k)])),
             )
+    yield of_form("the torque of all loads is missing", "loads", lambda f, s: _loads_scaled(f, 0.0))
     for what, power in (("divided", -1), ("multiplied", 1)):
         yield of_form(
             f"all loads have a wrong torque: it is {what} by the mass",

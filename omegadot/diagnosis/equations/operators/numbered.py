@@ -14,6 +14,7 @@ from omegadot.reference_impl.system import Array, State
 from omegadot.written import written
 
 NOT_ZERO = 1e-3  # an exponent that is one
+NOTHING = 1e-9  # of a vector, that rounding leaves of it
 NEAR = 1e-5  # a fitted exponent or factor is the plain number that is meant
 
 
@@ -44,7 +45,7 @@ def with_numbers() -> Sequence[Operator]:
         Operator(
             lambda v, x, p: p[0] * np.tanh(v / p[0]),
             lambda w, u, p: f"each component of {w} saturates as {_n(p)} {u} times a tanh",
-            lambda seen: None if seen.came is None else _largest(np.abs(seen.came)),
+            lambda seen: None if seen.came is None else _largest(np.abs(seen.came), seen.due),
         ),
         Operator(
             lambda v, x, p: v * (p[1] * norm(x.angular_velocity) ** p[0])[:, None],
@@ -68,8 +69,9 @@ def _held(v: Array, _: State, p: Array) -> Array:
     return np.asarray(v * np.minimum(1.0, p[0] / np.where(size > 0.0, size, 1.0)))
 
 
-def _largest(sizes: Array) -> Array | None:
-    return np.array([float(np.max(sizes))]) if np.max(sizes) > 0.0 else None
+def _largest(sizes: Array, due: Array) -> Array | None:
+    most = float(np.max(sizes))
+    return np.array([most]) if most > NOTHING * float(np.max(norm(due))) else None
 
 
 def _between(seen: Seen, sizes: Array) -> Array | None:
@@ -91,7 +93,13 @@ def _size_limit(seen: Seen) -> Array | None:
     used = np.flatnonzero(_changed(seen, seen.came))
     if not len(used):
         return None
-    return np.array([float(norm(seen.came)[used[np.argmin(seen.bound[used])]])])
+    best = used[np.argmin(seen.bound[used])]
+    return _unless_nothing(float(norm(seen.came)[best]), seen.due[best])
+
+
+def _unless_nothing(limit: float, due: Array) -> Array | None:
+    """None of a limit that is nothing beside what it holds: that is missing."""
+    return np.array([limit]) if limit > NOTHING * float(norm(due)) else None
 
 
 def _component_limit(seen: Seen) -> Array | None:
@@ -102,7 +110,7 @@ def _component_limit(seen: Seen) -> Array | None:
         return None
     best = used[np.argmin(seen.bound[used])]
     off = np.abs(seen.came[best] - seen.due[best])
-    return np.array([float(np.abs(seen.came[best, np.argmax(off)]))])
+    return _unless_nothing(float(np.abs(seen.came[best, np.argmax(off)])), seen.due[best])
 
 
 def _size_threshold(seen: Seen) -> Array | None:
@@ -134,7 +142,10 @@ def _most(seen: Seen, size: Callable[[Array], Array]) -> Array | None:
     used = np.flatnonzero(_changed(seen, seen.came))
     if not len(used):
         return None
-    return np.array([float(np.max(size(seen.came - seen.due)[used[np.argmin(seen.bound[used])]]))])
+    best = used[np.argmin(seen.bound[used])]
+    if _unless_nothing(float(norm(seen.came)[best]), seen.due[best]) is None:
+        return None
+    return np.array([float(np.max(size(seen.came - seen.due)[best]))])
 
 
 def _power(seen: Seen, of: Array) -> Array | None:
