@@ -19,6 +19,7 @@ from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.judging.refine import (
+    MORE_OF_ONE,
     MOST_HALVINGS,
     Refinements,
     left_undecided,
@@ -194,7 +195,7 @@ class Runner:
         Then with the axes of the world turned, where these can.
         """
         finer: dict[str, Refinements] = {}
-        for _ in range(MOST_HALVINGS):
+        for _ in range(MOST_HALVINGS + MORE_OF_ONE):
             futures = []
             for found in judged.engines:
                 name, driver = found.engine.name, self.engines.drivers[found.engine.name]
