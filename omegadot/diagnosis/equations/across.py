@@ -126,7 +126,7 @@ class Across:
                 if text and text == self._rule(rule, FORWARD):
                     return [text]
             own = own or (text and f"in inverse dynamics, {text.removeprefix('in the dynamics, ')}")
-        return [own] if own else self._inverse.causes(name)
+        return self._inverse.causes(name) or [own] * bool(own)
 
     def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""

@@ -55,7 +55,10 @@ def _fits(every: Sequence[Evidence], first: Evidence) -> Iterator[_Fit]:
                     break
             if fits.any():
                 first_, last = np.flatnonzero(fits)[[0, -1]]
-                yield _Fit(rule, place, *_around(known, tried[first_], tried[last]))
+                low, high = _around(known, tried[first_], tried[last])
+                # with equal moments in all bodies there is no gyroscopic term: that is missing
+                if np.isfinite(high) or rule in SMALL_RULES or place.parts != ("spin",):
+                    yield _Fit(rule, place, low, high)
 
 
 def _own(evidence: Evidence, place: Place, rule: NearRule) -> Array:

@@ -13,7 +13,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import Hypothesis, wrong
 from omegadot.diagnosis.equations.hypotheses.inertia import inertia_hypotheses, spin_hypotheses
 from omegadot.diagnosis.equations.hypotheses.levers import lever_hypotheses
 from omegadot.diagnosis.equations.hypotheses.pivot import pivot_hypotheses
-from omegadot.diagnosis.equations.hypotheses.torque import torque_hypotheses
+from omegadot.diagnosis.equations.hypotheses.torque import loads_hypotheses, torque_hypotheses
 from omegadot.diagnosis.equations.hypotheses.unsymmetric import unsymmetric_hypotheses
 from omegadot.reference_impl.system import System
 
@@ -33,4 +33,5 @@ FIXED: tuple[Hypothesis, ...] = (
 
 def hypotheses(system: System) -> list[Hypothesis]:
     """All of them, for one system; most make no difference to it."""
-    return [*FIXED, *inertia_hypotheses(system), *unsymmetric_hypotheses(system)]
+    own = (*inertia_hypotheses(system), *unsymmetric_hypotheses(system))
+    return [*FIXED, *own, *loads_hypotheses(system)]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import Form
+from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     AXES,
     Hypothesis,
@@ -25,6 +25,17 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
 from omegadot.diagnosis.models.principal_axes import SIGNS, near_the_bodys
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, Load, System
+
+
+def loads_hypotheses(system: System) -> Iterator[Hypothesis]:
+    """Of a system on which several loads act: that none does. Of one load it is that one."""
+    load, form = system.load, form_of(system)
+    weight = bool(np.any(form.weight)) and load.pivot is not None
+    applied = bool(np.any(load.torque_body) or np.any(load.torque_world))
+    if applied + weight + bool(np.any(load.damping)) > 1:
+        yield of_form(
+            "the torque of all loads is missing", "loads", lambda f, s: _loads_scaled(f, 0.0)
+        )
 
 
 def torque_hypotheses() -> Iterator[Hypothesis]:
@@ -98,7 +109,6 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
                 "torque",
                 given(order, lambda k, one: applied(one, lambda t: t[list(k)])),
             )
-    yield of_form("the torque of all loads is missing", "loads", lambda f, s: _loads_scaled(f, 0.0))
     for what, power in (("divided", -1), ("multiplied", 1)):
         yield of_form(
             f"all loads have a wrong torque: it is {what} by the mass",

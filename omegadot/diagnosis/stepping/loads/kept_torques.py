@@ -101,8 +101,9 @@ def _motion(run: KeptRun, by: SchemeOf) -> Motion:
         kept = np.where(turned, rotate_inverse(state.orientation, there), own)
         more = -kept
         for lane in np.flatnonzero(held):
-            here = state[lane]
-            more[lane] = kept[lane] - TORQUES[LANES[lane][1]](system, here)
+            here = state[..., lane, :, :]  # differences for a Jacobian stand in front of the lanes
+            due = TORQUES[LANES[lane][1]](system, here)
+            more[..., lane, :, :] = kept[..., lane, :, :] - due
         return Acceleration(true.angular + apply(back, more), true.linear)
 
     return motion_over(system, by.coordinates, acceleration)
