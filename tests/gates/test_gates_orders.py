@@ -15,7 +15,7 @@ from omegadot.gates.errors.observed_order import (
     is_whole,
     observed_order,
 )
-from omegadot.gates.errors.orders import NEAR_ROUNDING, SATURATE, order_of
+from omegadot.gates.errors.orders import LATE, NEAR_ROUNDING, SATURATE, order_of
 from omegadot.gates.errors.sweep_errors import LARGEST_RISE, Errors
 from omegadot.reference_impl.system import Array
 
@@ -335,3 +335,20 @@ def test_steps_longer_than_an_engines_own_change_nothing() -> None:
     coarse = order_of(over_time({h: own[h] ** 2 * growing for h in (1.0, 0.5, 0.25)}))
     assert coarse is not None
     assert (coarse.value, coarse.same) == (pytest.approx(0.0), True)
+
+
+@pytest.mark.parametrize(("first", "hidden"), [(4.0, LATE), (3.0, ""), (6.0, "")])
+def test_a_late_sum_of_powers_is_not_judged_where_earlier_errors_show_the_first(
+    first: float, hidden: str
+) -> None:
+    """Caught: a scheme in rotation vectors on a thin body, by its late slopes of 4.2 and 3.1.
+
+    Earlier errors of an order that is lower, or far higher, leave the late ones as they are.
+    """
+    late = {0.04: 1.66e-6, 0.02: 9.25e-8, 0.01: 1.08e-8}
+    early = {h: 1e-9 * (h / 0.01) ** first * SAMPLES for h in late}
+    sizes = {h: np.where(SAMPLES > 0.6, late[h], early[h]) for h in late}
+    found = order_of(over_time(sizes))
+    assert found is not None
+    assert not found.resolved
+    assert found.hidden == hidden

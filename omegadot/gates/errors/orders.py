@@ -30,6 +30,8 @@ from omegadot.gates.errors.sweep_errors import (
 from omegadot.gates.errors.two_terms import of_two_terms
 
 SATURATE, NEAR_ROUNDING = "errors saturate", "errors are close to rounding"
+LATE = "late errors are sums of several powers of the step, of which earlier ones show the first"
+ONE_MORE = 1.0  # order, by which two terms that nearly cancel shift a slope
 
 
 def order_of(sweep: Sequence[Errors]) -> ObservedOrder | None:
@@ -75,11 +77,21 @@ def _of_trajectories(sweep: Sequence[Errors]) -> ObservedOrder | None:
             return found
         shown = shown or (found and replace(found, resolved=False))
         if clear and not saturated:  # nothing hides the order: the errors follow no power of it
-            return of_two_terms(sweep, horizon) or shown
+            return of_two_terms(sweep, horizon) or (shown and _late(sweep, shown))
     if shown is None or len(sweep) < FEWEST_STEPS:
         return shown
     saturated = any(errors.largest(1.0)[2] for errors in sweep)
     return replace(shown, hidden=SATURATE if saturated else NEAR_ROUNDING)
+
+
+def _late(sweep: Sequence[Errors], shown: ObservedOrder) -> ObservedOrder:
+    """An order that the whole time does not resolve, and a shorter one does, one higher at most."""
+    for horizon in HORIZONS[1:]:
+        found, _, saturated = _over(sweep, horizon)
+        if found is not None and found.resolved and not saturated:
+            near = 0.0 <= found.value - shown.value <= ONE_MORE
+            return replace(shown, hidden=LATE) if near else shown
+    return shown
 
 
 def _vanishes(sweep: Sequence[Errors]) -> bool:
