@@ -125,7 +125,7 @@ class Driver:
         if not self._primed:
             self._primed = True
             any(self._load(other).ok for other in others)
-            self._timeouts_in_a_row = 0  # no case was asked for
+            self._timeouts_in_a_row = 0  # no case was requested
 
     def _send(self, call: Callable[[], Answer]) -> Answer:
         """What a call to the worker comes to, when its turn has come."""

@@ -149,6 +149,11 @@ class KeptRun:
         return np.asarray(np.all(good, axis=0))
 
 
+def plain_names(names: Sequence[str]) -> list[str]:
+    """Of schemes that are one here, those of which no other is a variant at longer turns alone."""
+    return [one for one in names if not any(one.startswith(f"{other}-") for other in names)]
+
+
 def kept_run(
     name: str,
     truth: Truth,

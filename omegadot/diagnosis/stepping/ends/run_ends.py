@@ -15,6 +15,7 @@ from omegadot.diagnosis.stepping.kept_run import (
     KeptRun,
     SchemeOf,
     bounds_of_samples,
+    plain_names,
     scheme_of,
 )
 from omegadot.gates.bounds.scales import norm
@@ -102,8 +103,7 @@ def other_ends(
         others = [one for one in SCHEMES.values() if by.coordinates in one.coordinates]
         shows = {one.name: _shown(ends, by, 0, False, one) for one in others if one != by.scheme}
         shows = {name: shown for name, shown in shows.items() if shown}
-        # a variant that is another at longer turns alone is not what these show
-        plain = [n for n in shows if not any(n.startswith(f"{other}-") for other in shows)]
+        plain = plain_names([*shows])
         if not plain:
             return None
         text = OTHER.format(" or ".join(plain), by.scheme.name)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.one_body.body_motion import body_motion
@@ -36,10 +36,10 @@ def first_step_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
         others = [one for name, one in SCHEMES.items() if name != by.scheme.name]
         found = [one for one in others if all(_begins(run, by, one) for run in (*wrong, *short))]
         names = [one.name for one in found]
-        # a variant that is another at longer turns alone is not what these show
-        plain = [one for one in names if not any(one.startswith(f"{other}-") for other in names)]
         own = by.scheme.name
-        return either([f"the first step of a run is by {one}, not by {own}" for one in plain])
+        return either(
+            [f"the first step of a run is by {one}, not by {own}" for one in plain_names(names)]
+        )
 
 
 def _begins(run: KeptRun, by: SchemeOf, first: Scheme) -> bool:

@@ -7,7 +7,7 @@ from math import comb
 
 import numpy as np
 
-from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names
 from omegadot.diagnosis.wording.conditions import ODDS
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.schemes import SCHEMES
@@ -30,9 +30,7 @@ def scheme_by_length(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     if len(texts) != 1:
         return []
     ((text, names),) = texts.items()
-    # a variant that is another at longer turns alone is not what these show
-    plain = [one for one in names if not any(one.startswith(f"{other}-") for other in names)]
-    return [f"{text} are by {' or '.join(plain)}, not by {by.scheme.name}"]
+    return [f"{text} are by {' or '.join(plain_names(names))}, not by {by.scheme.name}"]
 
 
 def _beyond(runs: Sequence[KeptRun], own: Sequence[bool], other: SchemeOf) -> str:

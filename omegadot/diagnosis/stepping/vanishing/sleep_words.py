@@ -1,4 +1,4 @@
-"""A law of sleep in words: which quantity is below a limit, for how many steps or how long."""
+"""A law of sleep as text: which quantity is below a limit, for how many steps or how long."""
 
 from __future__ import annotations
 
