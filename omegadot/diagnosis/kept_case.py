@@ -27,7 +27,7 @@ from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
 from omegadot.diagnosis.wording.features import Features, features_of
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
-from omegadot.gates.errors.measured_run import orders_for
+from omegadot.gates.errors.findings import orders_for
 from omegadot.gates.steps import restart
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth

@@ -8,15 +8,14 @@ import pytest
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.measured_run import (
-    CHANNELS,
+from omegadot.gates.errors.findings import (
     Declared,
-    MeasuredRun,
+    MeasuredSweep,
     evidence_of,
     findings_of,
-    measure,
     orders_for,
 )
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun, measure
 from omegadot.gates.truth import Companion, SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, Body, Load, State, System
@@ -48,6 +47,10 @@ def sweep(order: int, left: int | None = None) -> list[MeasuredRun]:
     return [measured(h, h**order, None if left is None else h**left) for h in (0.04, 0.02, 0.01)]
 
 
+def together(runs: list[MeasuredRun]) -> MeasuredSweep:
+    return MeasuredSweep(tuple(runs))
+
+
 def test_the_channels() -> None:
     assert CHANNELS == (
         "omega",
@@ -72,7 +75,7 @@ def test_energy_overflows_with_the_state(of_attitude: int, verdict: str) -> None
             error[channel] = np.where(times > 0.9, np.inf, error[channel])
         bound = dict.fromkeys(CHANNELS, np.full(65, BOUND))
         runs.append(MeasuredRun(Sweep(step, 64, 1), error, bound))
-    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)
+    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), together(runs))
     assert found["omega"].verdict == "info"
     assert found["attitude"].verdict == found["energy"].verdict == verdict
 
@@ -80,41 +83,53 @@ def test_energy_overflows_with_the_state(of_attitude: int, verdict: str) -> None
 @pytest.mark.parametrize("order", [1, 2, 4])
 def test_the_orders_of_an_error_and_of_what_is_left_of_it(order: int) -> None:
     runs = sweep(1, order)
-    own, left = evidence_of(runs[-1], runs, "energy", 1).orders
+    own, left = evidence_of(runs[-1], together(runs), "energy", 1).orders
     assert own is not None
     assert left is not None
     assert (own.value, left.value) == (pytest.approx(1), pytest.approx(order))
     alone = sweep(order)
-    assert len(evidence_of(alone[0], alone, "energy", 1).orders) == 1
+    assert len(evidence_of(alone[0], together(alone), "energy", 1).orders) == 1
 
 
 def test_each_run_has_an_excess_of_its_own() -> None:
     runs = [measured(h, h**2 + (0.4 if h == 0.04 else 0.0)) for h in (0.04, 0.02, 0.01, 0.005)]
-    excess = [evidence_of(run, runs, "omega", 2).excess for run in runs]
+    excess = [evidence_of(run, together(runs), "omega", 2).excess for run in runs]
     assert excess[0] > 10.0
     assert all(one < 1.0 for one in excess[1:])
-    assert [evidence_of(run, runs, "omega", 2).settled for run in runs] == [True] + 3 * [False]
-    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)["omega"]
+    assert [evidence_of(run, together(runs), "omega", 2).settled for run in runs] == [True] + 3 * [
+        False
+    ]
+    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), together(runs))[
+        "omega"
+    ]
     assert found.note.startswith("at this step the error is 31 times")
 
 
 def test_evidence_holds_what_was_measured() -> None:
     runs = [measured(0.04, 4e-3, 1e-5, floor=1e-7), measured(0.02, 2e-3)]
-    found = evidence_of(runs[0], runs, "omega")
+    found = evidence_of(runs[0], together(runs), "omega")
     assert found.error is runs[0].error["omega"]
     assert found.left is runs[0].against_scheme["omega"]
     assert found.round_off is runs[0].round_off["omega"]
     assert found.floor is runs[0].floor["omega"]
     assert len(found.orders) == 2
     assert found.orders[1] is None  # only one of the two has a scheme to compare with
-    alone = evidence_of(runs[1], runs, "energy")
+    alone = evidence_of(runs[1], together(runs), "energy")
     assert (alone.left, alone.floor, len(alone.orders)) == (None, None, 1)
+
+
+def test_errors_and_what_is_left_of_them_are_formed_once_and_apart() -> None:
+    both = together(sweep(1, 2))
+    assert both.order("omega") is both.order("omega")
+    assert both.errors("omega") is both.errors("omega")
+    orders = [both.order("omega", left=left) for left in (False, True)]
+    assert [one and round(one.value) for one in orders] == [1, 2]
 
 
 def test_findings_name_every_channel() -> None:
     runs = sweep(1)
     orders = dict.fromkeys(CHANNELS, 1) | {"energy": None, "position": 2}
-    found = findings_of(runs[0], Declared(None, orders), runs)
+    found = findings_of(runs[0], Declared(None, orders), together(runs))
     assert list(found) == list(CHANNELS)
     kinds = {channel: finding.kind for channel, finding in found.items()}
     assert kinds == dict.fromkeys(CHANNELS, "consistent") | {
@@ -124,9 +139,9 @@ def test_findings_name_every_channel() -> None:
     failed = {channel for channel, finding in found.items() if finding.verdict == "fail"}
     assert failed == {"energy", "position"}
     explained = [measured(0.04, 1e-3, BOUND)]
-    assert findings_of(explained[0], Declared("euler", orders), explained)["energy"].note == (
-        "explained by euler, to 1e-12"
-    )
+    assert findings_of(explained[0], Declared("euler", orders), together(explained))[
+        "energy"
+    ].note == ("explained by euler, to 1e-12")
 
 
 def states(size: float) -> State:

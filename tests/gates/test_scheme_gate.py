@@ -10,7 +10,8 @@ from in_process import builtin, declared, judged, truth_of
 from omegadot.adapters.registry import build_adapter
 from omegadot.gates.bounds.likeness import likeness, share_of
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.measured_run import Declared, MeasuredRun
+from omegadot.gates.errors.findings import Declared, MeasuredSweep
+from omegadot.gates.errors.measured_run import MeasuredRun
 from omegadot.gates.rows import worst
 from omegadot.gates.steps.scheme import comparison_keys, order_rows, orders_seen
 from omegadot.gates.truth import SchemeKey
@@ -105,7 +106,7 @@ def measured(timestep, size, bound=1e-12, saturated=0.0, **more):
 
 def held(measured_runs, order, left=None, stiffness=0.0):
     scheme = Declared("scheme" if left else None, dict.fromkeys(measured_runs[0].error, order))
-    seen = orders_seen(measured_runs)
+    seen = orders_seen(MeasuredSweep(tuple(measured_runs)))
     of = measured_runs[-1] if left is None else replace(measured_runs[-1], against_scheme=left)
     (row,) = [r for r in order_rows(seen, scheme, of, stiffness) if r.channel == "attitude"]
     return row

@@ -15,7 +15,8 @@ import pytest
 from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.bounds.scales import EPS, eps_of
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun
+from omegadot.gates.errors.findings import Declared
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.errors.rounding_step import rows as rounding_rows
 from omegadot.gates.rows import Row
 from omegadot.gates.runs import phase, trajectory

@@ -15,7 +15,8 @@ import pytest
 
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun, findings_of
+from omegadot.gates.errors.findings import Declared, MeasuredSweep, findings_of
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN
 from omegadot.harness.judging.runs import _finer_steps_decide, _left_open, _undetermined
 from omegadot.reference_impl.system import Array
@@ -44,13 +45,13 @@ def test_finer_steps_are_taken_where_rounding_leaves_something(
     errors: tuple[float, ...], decides: bool
 ) -> None:
     runs = [measured(h, e) for h, e in zip((0.04, 0.02, 0.01), errors, strict=True)]
-    findings = findings_of(runs[0], Declared(None, ORDERS), runs)
+    findings = findings_of(runs[0], Declared(None, ORDERS), MeasuredSweep(tuple(runs)))
     assert _finer_steps_decide(findings, runs) is decides
 
 
 def test_single_precision_and_known_schemes_are_refined_as_long_as_anything_is_open() -> None:
     runs = [measured(h, 2e-12) for h in (0.04, 0.02, 0.01)]
-    findings = findings_of(runs[0], Declared(None, ORDERS), runs)
+    findings = findings_of(runs[0], Declared(None, ORDERS), MeasuredSweep(tuple(runs)))
     assert not _finer_steps_decide(findings, runs)
     assert _finer_steps_decide(findings, [replace(run, single=True) for run in runs])
     assert _finer_steps_decide(findings, [replace(r, against_scheme=r.error) for r in runs])
@@ -71,7 +72,7 @@ def test_no_digit_of_the_inverse_leaves_an_overflow_unjudged(
 def test_what_refused_steps_would_decide_is_left_open() -> None:
     """Errors that do not shrink at three steps fail; not where the engine refuses the fourth."""
     runs = [measured(h, e) for h, e in zip((0.04, 0.02, 0.01), (1e-6, 0.9e-6, 0.8e-6), strict=True)]
-    findings = findings_of(runs[0], Declared(None, ORDERS), runs)
+    findings = findings_of(runs[0], Declared(None, ORDERS), MeasuredSweep(tuple(runs)))
     assert {one.kind for one in findings.values()} >= {"unsettled"}
     left = _left_open(findings)
     assert "unsettled" not in {one.kind for one in left.values()}

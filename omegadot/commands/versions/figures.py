@@ -21,7 +21,8 @@ from omegadot.diagnosis.scheme_study.probes import Probe
 from omegadot.diagnosis.scheme_study.study import OWN_STEPS, Order, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper
 from omegadot.gates.case import Case
-from omegadot.gates.errors.measured_run import CHANNELS, orders_for
+from omegadot.gates.errors.findings import orders_for
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import forward_rows, inverse_rows

@@ -20,7 +20,8 @@ from omegadot.diagnosis.scheme_study.subject import (
     one_of,
     stepper_of,
 )
-from omegadot.gates.errors.measured_run import CHANNELS, orders_for
+from omegadot.gates.errors.findings import orders_for
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.gates.truth import scheme_key
 from omegadot.harness.arguments import integrators_chosen

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.gates.bounds.scales import norm
-from omegadot.gates.errors.measured_run import Declared, MeasuredRun, evidence_of
+from omegadot.gates.errors.findings import Declared, MeasuredSweep, evidence_of
+from omegadot.gates.errors.measured_run import MeasuredRun
 from omegadot.gates.errors.verdicts import Finding, judge
 from omegadot.gates.truth import Truth
 
@@ -40,15 +41,15 @@ def in_other_worlds(
     findings: dict[str, Finding],
     turned: Sequence[MeasuredRun],
     declared: Declared,
-    known: Sequence[MeasuredRun],
+    sweep: MeasuredSweep,
 ) -> dict[str, Finding]:
     """The findings, of which those are not judged that do not hold in a world of other axes.
 
-    turned: the same run in such worlds, turned back.  known: all runs of the sweep.
+    turned: the same run in such worlds, turned back.  sweep: all its runs.
     """
     outlying = [channel for channel, one in findings.items() if one.kind == "outlying"]
     for other in turned:
-        runs = [other if one is measured else one for one in known]
+        runs = MeasuredSweep(tuple(other if one is measured else one for one in sweep.runs))
         again = []
         for channel in outlying:
             order = declared.orders[channel]

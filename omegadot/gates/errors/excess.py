@@ -85,10 +85,10 @@ def _beyond(own: Errors, finer: Sequence[Errors], declared: int) -> float:
         # What is hidden by rounding at one time may show at another.
         order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
         order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
-    error = np.maximum.accumulate(own.size)[ends]
+    error = own.until[0, ends]
     if own.saturates:
         error = np.minimum(error, SATURATED)
-    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
+    least = CLEAR_OF_ROUNDING * own.until[1, ends]
     with np.errstate(all="ignore"):
         allowed = e1 * (own.timestep / finer[0].timestep) ** (order + EXCESS_ORDERS)
         excess = error / np.maximum(allowed, least)
@@ -105,8 +105,8 @@ def _slopes(one: Errors, finer: Errors, e1: Known, e2: Known) -> Array:
 def _above_rounding(errors: Errors, until: Array) -> Array:
     """(n,): the largest error up to each of these times; zero where it is within rounding."""
     place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
-    size = np.maximum.accumulate(errors.size)[place]
-    return np.where(size > np.maximum.accumulate(errors.bound)[place], size, 0.0)
+    size, bound, _ = errors.until[:, place]
+    return np.where(size > bound, size, 0.0)
 
 
 def _at(errors: Errors, until: Array) -> Known:
@@ -115,6 +115,6 @@ def _at(errors: Errors, until: Array) -> Known:
     Below that nothing is known of an error but that it is no larger.
     """
     place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
-    size = np.maximum.accumulate(errors.size)[place]
-    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(errors.bound)[place]
+    size, bound, _ = errors.until[:, place]
+    least = CLEAR_OF_ROUNDING * bound
     return np.maximum(size, least), size > least

@@ -6,21 +6,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
 from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.excess import excess_of
-from omegadot.gates.errors.highest_order import highest_order
-from omegadot.gates.errors.observed_order import ObservedOrder
-from omegadot.gates.errors.orders import order_of
-from omegadot.gates.errors.sweep_errors import FEWEST_STEPS, Errors
-from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, OF_EITHER, Evidence, Finding, judge
-from omegadot.gates.truth import Companion, Truth, scheme_key
+from omegadot.gates.errors.verdicts import OF_EITHER
+from omegadot.gates.truth import Companion, Truth
 from omegadot.reference_impl.energy import total_energy
-from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Array, State
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
 ROTATION = ("omega", "attitude")
@@ -112,79 +105,3 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
 
 def _sizes(values: Array) -> Array:
     return np.where(np.isnan(values), np.inf, values)
-
-
-def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors | None:
-    """A run's errors in a channel, or what is left of them after the declared scheme."""
-    if left and not run.against_scheme:
-        return None
-    size = run.against_scheme[channel] if left else run.error[channel]
-    rounding = run.beside_scheme if left else run.round_off
-    bound = np.maximum(rounding[channel], run.floor.get(channel, 0.0))
-    largest, saturates = run.saturating_error, channel in SATURATING
-    gained = run.gained if channel == "energy" and not left else None
-    signed = None if gained is None else size * gained
-    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates, signed)
-
-
-def evidence_of(
-    measured: MeasuredRun,
-    measured_runs: list[MeasuredRun],
-    channel: str,
-    declared: int | None = None,
-) -> Evidence:
-    """What one run and the others of its sweep show in a channel. declared: its order."""
-    left = measured.against_scheme.get(channel)
-    orders: list[ObservedOrder | None] = []
-    finer = sum(run.sweep.timestep < measured.sweep.timestep for run in measured_runs)
-    highest, excess = np.inf, 0.0
-    for part in (False,) if left is None else (False, True):
-        errors = [errors_of(run, channel, left=part) for run in measured_runs]
-        known = [one for one in errors if one is not None]
-        orders.append(order_of(known))
-        if measured.single:
-            highest = min(highest, highest_order(known))
-        if channel in STATE and declared is not None:
-            own = next(one for one in known if one.timestep == measured.sweep.timestep)
-            excess = max(excess, excess_of(own, known, declared + part))
-    bound, floor = measured.round_off[channel], measured.floor.get(channel)
-    stiffness = min(run.stiffness for run in measured_runs)
-    of_momentum, opened = measured.of_momentum.get(channel), measured.opened.get(channel)
-    more = (excess, finer >= FEWEST_STEPS, highest, of_momentum, stiffness, opened)
-    return Evidence(measured.error[channel], bound, left, tuple(orders), floor, *more)
-
-
-@dataclass(frozen=True)
-class Declared:
-    """What an integrator is judged by: its scheme, and its order per channel (None: conserved)."""
-
-    scheme: str | None
-    orders: dict[str, int | None]
-
-
-def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
-    """The declared orders; those of a known scheme are higher where the system is simple."""
-    key = scheme_key(integrator, system)
-    if key is None or key.scheme not in SCHEMES:
-        return {c: integrator.orders.get(c) for c in CHANNELS}
-    scheme = SCHEMES[key.scheme]
-    return {c: scheme.order(c, system, key.coordinates) for c in CHANNELS}
-
-
-def findings_of(
-    measured: MeasuredRun, declared: Declared, measured_runs: list[MeasuredRun]
-) -> dict[str, Finding]:
-    """Judge every channel of one run; the other runs of its sweep show the orders.
-
-    Where the state blows up as a scheme may, so do energy and angular momentum: these may show no
-    order until then, as their errors cancel now and then.
-    """
-    found = {
-        c: judge(evidence_of(measured, measured_runs, c, order), declared.scheme, order)
-        for c, order in declared.orders.items()
-    }
-    lost = [found[c] for c in STATE if c in found and not np.all(np.isfinite(measured.error[c]))]
-    if lost and all(finding.kind == "beyond" for finding in lost):
-        follow = {c for c, finding in found.items() if finding == BLOWN_UP_UNSEEN}
-        found |= dict.fromkeys(follow - {*STATE}, lost[0])
-    return found

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.gates.bounds.scales import EPS
-from omegadot.gates.errors.measured_run import ROTATION, Declared, MeasuredRun
+from omegadot.gates.errors.findings import Declared
+from omegadot.gates.errors.measured_run import ROTATION, MeasuredRun
 from omegadot.gates.rows import Row
 from omegadot.written import written
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -41,9 +42,15 @@ class Errors:
 
     def largest(self, horizon: float) -> tuple[float, float, bool]:
         """Error and bound over a part of the samples, and whether errors saturate there."""
-        samples = int(np.ceil(horizon * len(self.size)))
-        error, bound = np.max(self.size[:samples]), np.max(self.bound[:samples])
-        return float(error), float(bound), not np.max(self.overall[:samples]) <= SATURATED
+        last = int(np.ceil(horizon * len(self.size))) - 1
+        error, bound, overall = self.until[:, last]
+        return float(error), float(bound), not overall <= SATURATED
+
+    @cached_property
+    def until(self) -> Array:
+        """(3, n): the largest error, bound and overall error up to each sample."""
+        found: Array = np.maximum.accumulate((self.size, self.bound, self.overall), axis=-1)
+        return found
 
     @property
     def shows(self) -> bool:

@@ -8,14 +8,9 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.likeness import Likeness, like_schemes, likeness
-from omegadot.gates.errors.measured_run import (
-    CHANNELS,
-    Declared,
-    MeasuredRun,
-    errors_of,
-)
+from omegadot.gates.errors.findings import Declared, MeasuredSweep
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.errors.observed_order import ORDER_TOLERANCE, VANISHED, ObservedOrder, is_whole
-from omegadot.gates.errors.orders import order_of
 from omegadot.gates.errors.verdicts import STIFF
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
@@ -31,15 +26,10 @@ MOMENTUM = "the angular momentum, where it is what is stepped, may round by as m
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
-def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, ObservedOrder]:
+def orders_seen(sweep: MeasuredSweep) -> dict[str, ObservedOrder]:
     """The order of every channel with an error above rounding, from all runs of one sweep."""
-    found = {}
-    for channel in CHANNELS:
-        errors = [errors_of(run, channel) for run in measured_runs]
-        order = order_of([one for one in errors if one is not None])
-        if order is not None:
-            found[channel] = order
-    return found
+    found = {channel: sweep.order(channel) for channel in CHANNELS}
+    return {channel: order for channel, order in found.items() if order is not None}
 
 
 def order_rows(

@@ -13,7 +13,8 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.measured_run import Declared, MeasuredRun, findings_of, measure
+from omegadot.gates.errors.findings import Declared, MeasuredSweep, findings_of
+from omegadot.gates.errors.measured_run import MeasuredRun, measure
 from omegadot.gates.truth import Truth
 from omegadot.harness.judging.judged_run import JudgedRun, diverged, failed
 from omegadot.harness.judging.no_solution import unjudged_row
@@ -42,7 +43,7 @@ def judge_raised(
     """
     answer, eps = dict(tried)[sweep], truth.yardstick.eps
     own = measure(truth.of_kept(sweep, begun), sweep, begun, None)
-    findings = findings_of(own, declared, [*known, own])
+    findings = findings_of(own, declared, MeasuredSweep((*known, own)))
     until = Answer("ok", result={"time": sweep.times, "state": vars(begun)})
     found = diverged(integrator, sweep, until, own, findings, eps)
     if not found.fails:

@@ -9,14 +9,14 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import coordinates, rounding_step
-from omegadot.gates.errors.measured_run import (
+from omegadot.gates.errors.findings import (
     Declared,
-    MeasuredRun,
+    MeasuredSweep,
     errors_of,
     findings_of,
-    measure,
     orders_for,
 )
+from omegadot.gates.errors.measured_run import MeasuredRun, measure
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.runs import trajectory
 from omegadot.gates.steps import accuracy, scheme
@@ -66,8 +66,9 @@ def _judge_steps(
     measured_runs = {s: one for s, one in measured_runs.items() if s not in lost}
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
+    together = MeasuredSweep(tuple(known))
     refused = any(answer.outcome == "unsupported" for _, answer in finer)
-    seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
+    seen, grows = scheme.orders_seen(together), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
         if sweep in lost:
             rows = [trajectory.time_row(sweep, answer.result["time"], eps), unjudged_row(NO_ROOT)]
@@ -87,7 +88,7 @@ def _judge_steps(
                 yield failed(integrator, sweep, answer, eps)
             continue
         state = states[sweep]
-        findings = findings_of(measured, declared, known)
+        findings = findings_of(measured, declared, together)
         findings = _left_open(findings) if refused else findings
         if not is_finite(state):
             findings = _undetermined(truth, findings)
@@ -97,7 +98,7 @@ def _judge_steps(
         if by_axes and (integrator.name, sweep.knob) in result.turned:
             turned = result.turned[integrator.name, sweep.knob]
             again = [measure(truth, sweep, one, None) for one in turned]
-            findings = coordinates.in_other_worlds(measured, findings, again, declared, known)
+            findings = coordinates.in_other_worlds(measured, findings, again, declared, together)
             by_axes = False
         if integrator.knob == "fixed-accuracy":
             findings = accuracy.fixed(findings)
