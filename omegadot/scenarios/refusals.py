@@ -69,8 +69,13 @@ def key_path(location: Location) -> str:
         if isinstance(item, int):
             path += f"[{item}]"
         elif not (item in SHAPES and location[index - 2 : index - 1] == ("part",)):
-            path = _join(path, printable(item))
+            path = _join(path, _as_written(printable(item)))
     return path
+
+
+def _as_written(key: str) -> str:
+    """A key as TOML takes it: in quotes, where a blank in it would not be seen."""
+    return f'"{key}"' if set(key) & {" ", "."} else key
 
 
 def _join(path: str, key: str) -> str:

@@ -162,6 +162,7 @@ MALFORMED: list[tuple[str, str, str, str]] = [
         "missing",
         "N m",
     ),
+    (LOADED + "'damping ' = 0.1", 'load."damping "', "an unknown key (0.1)", "write damping"),
     (
         LOADED + TORQUE + "values = [0, 0, 1]\n",
         "load.torque[0].values",

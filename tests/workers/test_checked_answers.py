@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from omegadot.adapters.protocol import Description, Integrator, Trajectory
+from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
 from omegadot.reference_impl.system import Acceleration, Body, State
 from omegadot.workers.engine_end.checked import (
     AnswerError,
@@ -217,6 +217,8 @@ def raised(error: BaseException) -> str:
 
 def test_a_failure_names_its_type_and_line(monkeypatch: pytest.MonkeyPatch) -> None:
     assert raised(ValueError("no")).startswith("ValueError: no (test_checked_answers.py:")
+    assert raised(UnsupportedError("no pivot")) == "no pivot"
+    assert raised(UnsupportedError(" ")).startswith("the adapter states no reason")
     assert raised(KeyboardInterrupt()).startswith("KeyboardInterrupt (test_checked_answers.py:")
     monkeypatch.setenv("OMEGADOT_WORKER_MEMORY", str(2**31))
     assert raised(MemoryError()).endswith("the limit is 2 GiB, omegadot run --memory sets another")

@@ -35,6 +35,7 @@ from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 from omegadot.written import written
 
+NO_REASON = "the adapter states no reason; give UnsupportedError a sentence that does"
 _SECONDS_TO_LOOK = 0.5
 # Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]
@@ -52,7 +53,7 @@ def failure(error: BaseException) -> dict[str, Any]:
     traceback.clear_frames(error.__traceback__)  # what they hold may be all the memory there is
     texts = one_line(_text_of(error))
     if isinstance(error, UnsupportedError):
-        return {"outcome": "unsupported", "reason": texts}
+        return {"outcome": "unsupported", "reason": texts or NO_REASON}
     if isinstance(
         error, AnswerError | ProgramError | UnrepresentableError
     ):  # it states all, and no line of ours helps
