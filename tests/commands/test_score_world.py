@@ -67,6 +67,9 @@ def test_a_rate_that_changes_is_said_to(score):
     assert options[0].endswith(",0,0")
     # What the option leaves is no rate, and the advice ends.
     again = score(attitude(exact, seen), *options)
+    left = float(line.rpartition("or by ")[2].split()[0])
+    assert again.json["channels"]["attitude"]["max"] == pytest.approx(left, rel=1e-2)
+    assert left > 100.0 * float(line.rpartition("and by ")[2].split()[0])
     assert not any("give --" in s for s in again.json["sentences"])
 
 

@@ -55,6 +55,9 @@ def _turned(found: Judged, turned: Turned) -> str:
     if turned.kind in ("rate", "drift"):
         rate = turned.vector / how.scale_of("rate")
         changes = ", a rate that changes a little" if turned.kind == "drift" else ""
+        if turned.unchanged is not None:  # which is all that can be declared
+            alone = written(factor * turned.unchanged, 3)
+            left += f", or by {alone} {unit} with the rate at the start alone"
         declared = how.world_rate @ how.world_axes.T  # as the sum of both is what to give
         whole = how.world_axes.T @ (turned.vector + declared) / how.scale_of("rate")
         return (

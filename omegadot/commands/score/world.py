@@ -38,13 +38,15 @@ class Turned:
 
     kind: "rate", "world" or "body", what of the three is not nothing; "drift" of a rate that
     changes as ``rate + b t + c t^2``.  vector: (3,) rad, or rad/s, at the start.
-    before, after: rad, the largest attitude error without and with it.
+    before, after: rad, the largest attitude error without and with it.  unchanged: rad, that with
+    the rate at the start alone, which is all that can be declared.
     """
 
     kind: str
     vector: Array
     before: float
     after: float
+    unchanged: float | None = None
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,9 @@ def _tried(exact: Rotation, own: Rotation, times: Array, before: float) -> Itera
         fit = np.linalg.lstsq(powers, turned.as_rotvec(), rcond=None)[0]
         fit[:, rate == 0.0] = 0.0
         left = (Rotation.from_rotvec(powers @ fit).inv() * turned).magnitude()
-        yield Turned("drift", rate + fit[0] / times[-1], before, float(np.max(left)))
+        first = rate + fit[0] / times[-1]
+        alone = (Rotation.from_rotvec(times[:, None] * first).inv() * world).magnitude()
+        yield Turned("drift", first, before, float(np.max(left)), float(np.max(alone)))
 
 
 def _with_own_axis(rate: Array) -> list[Array]:
