@@ -16,6 +16,7 @@ from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
+EQUAL = 1e-9  # of moments, which rounding and a rule of single numbers leave apart
 SEVERAL = 2  # readings between which nothing decides are said as what they share
 
 
@@ -56,9 +57,15 @@ def _fits(every: Sequence[Evidence], first: Evidence) -> Iterator[_Fit]:
             if fits.any():
                 first_, last = np.flatnonzero(fits)[[0, -1]]
                 low, high = _around(known, tried[first_], tried[last])
-                # with equal moments in all bodies there is no gyroscopic term: that is missing
-                if np.isfinite(high) or rule in SMALL_RULES or place.parts != ("spin",):
+                # Bodies that are all spheres have no gyroscopic term, and one more number each.
+                seen = np.isfinite(high) or rule in SMALL_RULES
+                if seen or not all(_is_sphere(e, place, rule, 2.0 * low) for e in every):
                     yield _Fit(rule, place, low, high)
+
+
+def _is_sphere(evidence: Evidence, place: Place, rule: NearRule, limit: float) -> bool:
+    made = np.linalg.eigvalsh(rule.tensor(place.requested(evidence.system), limit))
+    return bool(np.ptp(made) <= EQUAL * np.max(np.abs(made)))
 
 
 def _own(evidence: Evidence, place: Place, rule: NearRule) -> Array:
