@@ -59,7 +59,9 @@ def _texts(
     above = float(own[0]) < limit
     if any((one < limit) != above for one in own) or not _is_reached(held, parts, limit, above):
         return
-    if not all(_makes(e, parts, max(_own(e), limit) if above else min(_own(e), limit)) for e in held):
+    if not all(
+        _makes(e, parts, max(_own(e), limit) if above else min(_own(e), limit)) for e in held
+    ):
         return
     how = f"held above {number(limit)} kg" if above else f"limited to {number(limit)} kg"
     alone = ", as far as one scenario shows it" * (len(wrong) == 1)
