@@ -44,13 +44,16 @@ def old_operands_where(
     best = [lane for lane in lanes if made[lane] == most]
     if most < EXPLAINS * len(shows) or len(texts_of(best)) != 1:
         return []
-    wrong = {run.name for run in runs if run.fails}
-    sound = {run.name: run.short for run in runs if run.name not in wrong}
+    names = {run.name for run in runs if run.fails}
+    sound = {run.name: run.short for run in runs if run.name not in names}
     lane = best[0]
     there = [run for run in sound.values() if lane[0] in acting_on(run.system)]
     against = [run for run in there if not made_of(run, by, [lane])]
-    groups = [[features_of(r.system, r.state[0]) for r in x] for x in (failing.values(), against)]
-    common = in_common(*groups)
+    wrong, right = (
+        [features_of(run.system, run.state[0]) for run in group]
+        for group in (failing.values(), against)
+    )
+    common = in_common(wrong, right)
     if not 0 < len(common) <= MOST_NAMED:
         return []
     return [f"{texts_of([lane])[0]}, but only where {' or where '.join(common)}"]
