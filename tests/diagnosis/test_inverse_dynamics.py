@@ -164,3 +164,38 @@ def test_a_torque_that_is_not_finite_is_stated() -> None:
 
     due = ["the torque of inverse dynamics is not finite at 1 of 60 states"]
     assert set(map(tuple, named(lost, FEW).values())) == {tuple(due)}
+
+
+def at_mean_omega(s: System, x: State, _: Acceleration) -> Array:
+    w = x.angular_velocity
+    mean = np.mean(w, axis=0) + 0.0 * w
+    return gyroscopic(s, replace(x, angular_velocity=mean)) - gyroscopic(s, x)
+
+
+def at_first_omega(s: System, x: State, _: Acceleration) -> Array:
+    w = x.angular_velocity
+    return gyroscopic(s, replace(x, angular_velocity=w[:1] + 0.0 * w)) - gyroscopic(s, x)
+
+
+def with_mean_momentum(s: System, x: State, _: Acceleration) -> Array:
+    w = x.angular_velocity
+    mean = np.mean(w, axis=0) @ np.asarray(moving_inertia(s)) + 0.0 * w
+    return np.asarray(cross(w, mean) - gyroscopic(s, x))
+
+
+MEAN = "is the mean over those that are requested together"
+BATCHES: dict[str, tuple[More, str]] = {
+    "mean omega": (at_mean_omega, f"omega in the gyroscopic term {MEAN}"),
+    "mean momentum": (with_mean_momentum, f"I omega in the gyroscopic term {MEAN}"),
+    "first omega": (
+        at_first_omega,
+        "the gyroscopic term is that of the first state among those that are requested together",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BATCHES)
+def test_what_is_taken_of_the_whole_batch_is_named(name: str) -> None:
+    """Caught: no cause, where every state has the mean of all."""
+    more, text = BATCHES[name]
+    assert named(more, FEW) == {one.name: [f"in inverse dynamics, {text}"] for one in FEW}

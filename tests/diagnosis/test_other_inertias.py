@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from test_causes import causes_over
-from wrong_equations import BODY_TORQUE, GRAVITY, TENSOR, case
+from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, TENSOR, case
 
 from omegadot.diagnosis.models.principal_axes import right_handed
 from omegadot.gates.case import Case
@@ -271,3 +272,59 @@ def test_principal_axes_are_put_together_the_wrong_way_round(change: Change) -> 
     found = causes_over(using(change, (*SPIN, *SOLVE)), TILTED)
     transposed = "in the dynamics, the rotation of the inertia's principal axes looks transposed"
     assert {text.rstrip() for text in found.values()} == {transposed}
+
+
+def single_off_diagonal(tensor: Array) -> Array:
+    kept = np.diag(np.diag(tensor))
+    return np.asarray(kept + (tensor - kept).astype(np.float32))
+
+
+def test_products_alone_in_single_precision_are_named() -> None:
+    """Caught: moments about other axes, by six numbers."""
+    causes = causes_over(of_body(single_off_diagonal), (*SIZES, TOP))
+    assert len(causes) == 4
+    text = "the products of inertia alone are kept in single precision"
+    assert set(causes.values()) == {text}
+
+
+def of_body(change: Change) -> Any:
+    """The right equation of a body with another inertia."""
+
+    def found(system: System, states: State) -> Acceleration:
+        body = replace(system.body, inertia=change(np.asarray(system.body.inertia)))
+        return forward_dynamics(replace(system, bodies=(body,)), states)
+
+    return found
+
+
+TOP = case("top", {"gravity": GRAVITY, "pivot": PIVOT}, 1.3)
+TOPS = (TOP, case("top-driven", {"torque": BODY_TORQUE, "pivot": [0.1, -0.5, 0.3]}, 0.7))
+
+
+def interchanged(tensor: Array) -> Array:
+    """xz and yz."""
+    made = tensor.copy()
+    made[0, 2] = made[2, 0] = tensor[1, 2]
+    made[1, 2] = made[2, 1] = tensor[0, 2]
+    return made
+
+
+OTHER_ORDER = "are in another order: xy, xz, yz hold xy, yz, xz"
+
+
+@pytest.mark.parametrize("parts", [SPIN, SOLVE, (*SPIN, *SOLVE)])
+def test_products_of_the_whole_inertia_are_told_from_the_bodys_own(parts: tuple[str, ...]) -> None:
+    """Caught: no cause on pivoted bodies, whose lever has products as well."""
+    where = {SPIN: "in the gyroscopic term", SOLVE: "where omega-dot is solved for"}
+    start = where.get(parts, "in the dynamics")
+    every = (*SIZES, *TOPS)
+    causes = causes_over(using(interchanged, parts), every)
+    assert len(causes) == len(every)
+    assert set(causes.values()) == {f"{start}, the products of the whole inertia {OTHER_ORDER}"}
+    free = causes_over(using(interchanged, parts), SIZES)
+    assert set(free.values()) == {f"{start}, the products of inertia {OTHER_ORDER}"}
+
+
+def test_own_products_are_no_products_of_the_whole_inertia() -> None:
+    causes = causes_over(of_body(interchanged), (*SIZES, *TOPS))
+    assert set(causes.values()) == {f"in the dynamics, the products of inertia {OTHER_ORDER}"}

@@ -8,10 +8,12 @@ import numpy as np
 
 from omegadot.diagnosis.equations.acting_torques import acting_torques
 from omegadot.diagnosis.equations.at_states import AtSomeStates, where_wrong
+from omegadot.diagnosis.equations.axis_mass import axis_mass
 from omegadot.diagnosis.equations.by_formula import Formulas
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.carried import Carried
 from omegadot.diagnosis.equations.evidence import FORWARD, INVERSE, Evidence
+from omegadot.diagnosis.equations.families.one_number import AXIS
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.inverse_series import inverse_series
 from omegadot.diagnosis.equations.known import kinds_off, known_over
@@ -25,10 +27,11 @@ from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_alone
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 from omegadot.diagnosis.models.attitudes_read import attitudes_read
+from omegadot.diagnosis.wording.kinds import EITHER
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 NOT_ON = ", not on "  # of a cause that other scenarios would show: a rule may say which
-OF_INERTIA: tuple[Rule, ...] = (near_inertia, inverse_series, limited_inertia)
+OF_INERTIA: tuple[Rule, ...] = (axis_mass, near_inertia, inverse_series, limited_inertia)
 
 
 class Across:
@@ -152,6 +155,9 @@ class Across:
             return Named(kept)
         found = self._shared(scene, source, PLAIN)
         whole = self._wrong(source) <= found.names and NOT_ON not in found.text
+        if found.text and whole and _is_of_axis(found):  # one factor a body, of which one is a law
+            limited = self._rule(axis_mass, source)
+            return Named(limited) if limited else found
         if found.text and whole:
             return found
         ruled = self._by_rule(source)
@@ -238,3 +244,9 @@ class Across:
             return Named(f"the equation holds at some states, and is wrong only where {where}")
         on_some_kind = self._carried.conditional(source, partial)
         return on_some_kind if on_some_kind.text else on_these_alone(partial, self._wrong(source))
+
+
+def _is_of_axis(found: Named) -> bool:
+    """Whether it is what the parallel-axis theorem adds, scaled, and nothing else fits."""
+    family = found.candidate.family if found.candidate is not None else None
+    return family is not None and family.name == AXIS and not found.text.startswith(EITHER)

@@ -148,7 +148,7 @@ def _limits_of(evidence: Evidence, place: Place, limit: _Limit) -> Iterator[tupl
             np.sum(bases[chosen], axis=0),
             np.tensordot(numbers[chosen], bases[chosen], 1),
         )
-        line, due = _balance(evidence, place.parts, before, gone)
+        line, due = balance(evidence, place.parts, before, gone)
         size = float(line @ line)
         if not (np.isfinite(size) and np.all(np.isfinite(due))):
             continue
@@ -165,7 +165,7 @@ def _limits_of(evidence: Evidence, place: Place, limit: _Limit) -> Iterator[tupl
             yield value, 1.0 / float(np.sqrt(size))
 
 
-def _balance(
+def balance(
     evidence: Evidence, parts: tuple[str, ...], before: Array, gone: Array
 ) -> tuple[Array, Array]:
     """(3 n,) each, in bounds: ``l line = due`` of ``J = M - gone + l before``.

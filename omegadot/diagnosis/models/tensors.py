@@ -38,6 +38,21 @@ def _times(factors: Sequence[float], products: list[float]) -> list[float]:
     return [a * b for a, b in zip(factors, products, strict=True)]
 
 
+def diagonal_in_single(tensor: Array) -> Array:
+    """A tensor (3, 3) with the numbers on its diagonal alone rounded to single precision."""
+    return np.asarray(tensor - _diagonal(tensor) + _diagonal(_single(tensor)))
+
+
+def products_in_single(tensor: Array) -> Array:
+    """A tensor (3, 3) with its products alone, off the diagonal, rounded to single precision."""
+    rounded = _single(tensor)
+    return np.asarray(_diagonal(tensor) + rounded - _diagonal(rounded))
+
+
+def _single(values: Array) -> Array:
+    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
+
+
 def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:
     """The products of inertia in another order, or single ones wrong."""
     names = ("xy", "xz", "yz")

@@ -9,7 +9,11 @@ import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.models.misread_state import state_causes
-from omegadot.diagnosis.models.tensors import other_tensors
+from omegadot.diagnosis.models.tensors import (
+    diagonal_in_single,
+    other_tensors,
+    products_in_single,
+)
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, eps_of
@@ -157,4 +161,7 @@ def _centers(system: System) -> Iterator[tuple[str, Array]]:
 def _inertias(system: System) -> Iterator[tuple[str, Array]]:
     tensor = np.asarray(system.body.inertia, dtype=float)
     yield "the inertia is kept in single precision", _single(tensor)
+    alone = "of inertia alone are kept in single precision"
+    yield f"the moments {alone}", diagonal_in_single(tensor)
+    yield f"the products {alone}", products_in_single(tensor)
     yield from other_tensors(system).items()

@@ -26,6 +26,7 @@ from omegadot.diagnosis.stepping.slips.first_step import first_step_causes
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
+from omegadot.diagnosis.stepping.slips.old_where import old_operands_where
 from omegadot.diagnosis.stepping.slips.scheme_by_length import scheme_by_length
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.slips.switched import switched
@@ -116,6 +117,7 @@ def _searches(
     yield lambda: tolerance_causes(by, runs)
     if solves:
         yield lambda: either(old_operands(by, chosen))
+    yield lambda: old_operands_where(by, chosen, runs)
     yield lambda: place_causes(by, runs)
 
 

@@ -26,6 +26,7 @@ from omegadot.written import written
 
 # Of what the inertia about the pivot is made of: omega-dot is far from linear in it.
 FAR = (1.0, 0.1, 10.0)
+AXIS = "parallel axis"  # the name of the family of its factor
 
 
 def _mass_scaled(form: Form, k: float) -> Form:
@@ -147,7 +148,7 @@ ONE_NUMBER: tuple[Family, ...] = (
     ),
     _with_lever(
         scalar(
-            "parallel axis",
+            AXIS,
             "inertia",
             1.0,
             always,

@@ -18,6 +18,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_load,
     single,
 )
+from omegadot.diagnosis.models.tensors import diagonal_in_single, products_in_single
 from omegadot.reference_impl.system import Array
 
 
@@ -78,6 +79,12 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
     yield of_body(
         f"the inertia {kept}", "precision", lambda body, s: {"inertia": single(body.inertia)}
     )
+    for what, rounded in (("moments", diagonal_in_single), ("products", products_in_single)):
+        yield of_body(
+            f"the {what} of inertia alone are kept in single precision",
+            "precision",
+            given(rounded, lambda how, body, s: {"inertia": how(body.inertia)}),
+        )
     yield of_body(
         f"the centre of mass {kept}",
         "precision",

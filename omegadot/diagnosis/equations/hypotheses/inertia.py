@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import form_of
+from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     Hypothesis,
     diagonal,
@@ -17,12 +18,17 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_form,
     own_inertia,
 )
-from omegadot.diagnosis.models.tensors import DROPPED, other_tensors
+from omegadot.diagnosis.models.tensors import DROPPED, other_tensors, product_mistakes
 from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.system import Array, System
 
 # As of a tensor about the pivot that is moved there once more.
 TWICE = "the inertia is moved to the pivot twice"
+PARTS: dict[str, tuple[str, ...]] = {
+    "in the dynamics": ("solve", "spin"),
+    "where omega-dot is solved for": ("solve",),
+    "in the gyroscopic term": ("spin",),
+}
 
 
 def spin_hypotheses() -> Iterator[Hypothesis]:
@@ -93,7 +99,9 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             "inertia",
             lambda f, s: _both(own_inertia(s) + _of_origin(s)) if s.load.pivot is None else {},
         )
+    yield from _of_whole(system)
     if np.any(about):
+        yield from _left_out()
         own_alone = "the inertia about the centre of mass is taken, not that about the pivot"
         yield of_form(
             f"where omega-dot is solved for, {own_alone}",
@@ -135,6 +143,51 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             "inertia",
             lambda f, s: _both(2.0 * f.spin - own_inertia(s)),
         )
+
+
+def _of_whole(system: System) -> Iterator[Hypothesis]:
+    """Mistakes in the products of the inertia about the pivot, the body's own ones added."""
+    whole = np.asarray(moving_inertia(system), dtype=float)
+    for name, tensor in product_mistakes(whole):
+        if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, whole):
+            continue
+        for where, parts in PARTS.items():
+            yield of_form(
+                f"{where}, {name.replace('of inertia', 'of the whole inertia')}",
+                "spin" if parts == ("spin",) else f"inertia:{name}",
+                given(name, parts, lambda t, p, f, s: _in_parts(p, _whole_with(s, t))),
+            )
+
+
+def _left_out() -> Iterator[Hypothesis]:
+    """What the parallel-axis theorem adds, but for one axis."""
+    for (where, parts), axis in product(PARTS.items(), range(3)):
+        own = f"the moment of inertia {2 * 'xyz'[axis]}"
+        names = ", ".join(n for n in ("xx", "xy", "xz", "yy", "yz", "zz") if "xyz"[axis] in n)
+        for what, alone in ((own, True), (f"the numbers {names} of the inertia", False)):
+            yield of_form(
+                f"{where}, the parallel-axis theorem adds nothing to {what}",
+                "spin" if parts == ("spin",) else "inertia",
+                given(axis, alone, parts, _without_axis),
+            )
+
+
+def _without_axis(
+    axis: int, alone: bool, parts: Sequence[str], form: Form, system: System
+) -> dict[str, Any]:
+    about, here = _about(system), np.arange(3) == axis
+    left = here[:, None] & here if alone else here[:, None] | here
+    return _in_parts(parts, own_inertia(system) + np.where(left, 0.0, about))
+
+
+def _in_parts(parts: Sequence[str], tensor: Array) -> dict[str, Any]:
+    return {name: one for name, one in _both(tensor).items() if name in parts}
+
+
+def _whole_with(system: System, text: str) -> Array:
+    """The inertia that moves, with this mistake in its products."""
+    whole = np.asarray(moving_inertia(system), dtype=float)
+    return dict(product_mistakes(whole))[text]
 
 
 def _tensor(system: System, text: str) -> Array:

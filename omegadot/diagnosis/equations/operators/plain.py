@@ -19,10 +19,11 @@ from omegadot.reference_impl.system import Array, State
 
 DECIMALS = range(9)
 OF_OTHERS: dict[str, Callable[[Array], Array]] = {
-    "the first state": lambda v: v[:1] + 0 * v,
-    "the last state": lambda v: v[-1:] + 0 * v,
-    "the state before": lambda v: np.roll(v, 1, axis=0),
-    "the state after": lambda v: np.roll(v, -1, axis=0),
+    "that of the first state among those": lambda v: v[:1] + 0 * v,
+    "that of the last state among those": lambda v: v[-1:] + 0 * v,
+    "that of the state before among those": lambda v: np.roll(v, 1, axis=0),
+    "that of the state after among those": lambda v: np.roll(v, -1, axis=0),
+    "the mean over those": lambda v: np.mean(v, axis=0, keepdims=True) + 0 * v,
 }
 
 
@@ -99,9 +100,9 @@ def of_any() -> Iterator[Operator]:
     """Those without numbers, of vectors and quaternions."""
     single = "is rounded to single precision"
     yield _plain(lambda v, x: v.astype(np.float32).astype(float), single, rounds=True)
-    together = "among those that are requested together"
+    together = "that are requested together"
     for which, of in OF_OTHERS.items():
-        yield _plain(partial(_of_states, of), f"is that of {which} {together}", among=True)
+        yield _plain(partial(_of_states, of), f"is {which} {together}", among=True)
     for digits in DECIMALS:
         yield _decimal(digits, np.round, "rounded")
         yield _decimal(digits, np.trunc, "cut")

@@ -56,6 +56,7 @@ SLACK = 4.0
 MORE = 6  # samples, after the first that the scheme misses
 EXPLAINS = 0.8  # of the runs that fail
 LEAST_RUNS, MOST_SAMPLES = 3, 12  # in which an old number shows, from the second step on
+Lane = tuple[str, str]  # an operand, as its text, and the place that it is of
 
 
 def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS) -> list[str]:
@@ -63,22 +64,18 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
 
     It makes the beginning of nearly every run that fails, and of every one that does not.
     """
-    name = by.scheme.name
-    if name not in STEPPED or by.coordinates != "com-world":
+    lanes = lanes_of(by)
+    if not lanes:
         return []
-    # within a step of these schemes the slips and the changes of single stages know the places
-    within = name in STAGED or (name in OF_SCHEME and name not in EXPLICIT)
-    places = PLACES_OF_SOLVED if name in SOLVED else PLACES[:3] if within else PLACES
-    shows = [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
+    shows = shown_by(by, runs)
     failing = len(shows)
     if failing < least:
         return []
-    made = Counter[tuple[str, str]]()
-    lanes = [(text, where) for text in OPERANDS for where in places if _differs(text, where, name)]
+    made = Counter[Lane]()
     for run in (*shows, *(run for run in runs if not run.fails)):
-        acting = _acting(run.system)
+        acting = acting_on(run.system)
         here = [lane for lane in lanes if lane[0] in acting]
-        good = _made(run, by, here) if here else set()
+        good = made_of(run, by, here) if here else set()
         if run.fails:
             made.update(good)
         else:
@@ -89,6 +86,27 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
     best = [lane for lane in lanes if made[lane] == most]
     if most < EXPLAINS * failing:
         return []
+    return texts_of(best)
+
+
+def lanes_of(by: SchemeOf) -> list[Lane]:
+    """Each operand with each place that it may be of, by a scheme that is known."""
+    name = by.scheme.name
+    if name not in STEPPED or by.coordinates != "com-world":
+        return []
+    # within a step of these schemes the slips and the changes of single stages know the places
+    within = name in STAGED or (name in OF_SCHEME and name not in EXPLICIT)
+    places = PLACES_OF_SOLVED if name in SOLVED else PLACES[:3] if within else PLACES
+    return [(text, where) for text in OPERANDS for where in places if _differs(text, where, name)]
+
+
+def shown_by(by: SchemeOf, runs: Sequence[KeptRun]) -> list[KeptRun]:
+    """Those that fail, and begin otherwise than the scheme."""
+    return [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
+
+
+def texts_of(best: Sequence[Lane]) -> list[str]:
+    """One of each place, as sentences."""
     plain = {where: text for text, where in reversed(best)}  # what states less comes first
     return [f"in each step {text.format(where)}" for where, text in reversed(plain.items())]
 
@@ -101,7 +119,7 @@ def _differs(text: str, where: str, name: str) -> bool:
     return where != EARLIER or name != "semi-implicit-euler" or moves
 
 
-def _made(run: KeptRun, by: SchemeOf, lanes: Sequence[tuple[str, str]]) -> set[tuple[str, str]]:
+def made_of(run: KeptRun, by: SchemeOf, lanes: Sequence[Lane]) -> set[Lane]:
     """Those that make the beginning of a run, a few samples more than the scheme itself makes."""
     sound = run.sound(by)
     first = len(sound) if sound.all() else int(np.argmin(sound))
@@ -111,7 +129,7 @@ def _made(run: KeptRun, by: SchemeOf, lanes: Sequence[tuple[str, str]]) -> set[t
     return {lane for lane, fits in zip(lanes, good, strict=True) if fits}
 
 
-def _acting(system: System) -> list[str]:
+def acting_on(system: System) -> list[str]:
     """What is there to be old: an operand of no load, or of a sphere, is none."""
     load, pivoted = system.load, system.load.pivot is not None
     there = {
@@ -126,7 +144,7 @@ def _acting(system: System) -> list[str]:
     ]
 
 
-def _in_lanes(run: KeptRun, by: SchemeOf, lanes: Sequence[tuple[str, str]], count: int) -> State:
+def _in_lanes(run: KeptRun, by: SchemeOf, lanes: Sequence[Lane], count: int) -> State:
     """(lanes, count, ...): the scheme with each of these operands old, at the samples."""
     q, v = to_coordinates(run.system, run.state[0], "com-world")
     q, v = (np.broadcast_to(x, (len(lanes), *x.shape)).copy() for x in (q, v))
