@@ -328,3 +328,18 @@ def test_products_of_the_whole_inertia_are_told_from_the_bodys_own(parts: tuple[
 def test_own_products_are_no_products_of_the_whole_inertia() -> None:
     causes = causes_over(of_body(interchanged), (*SIZES, *TOPS))
     assert set(causes.values()) == {f"in the dynamics, the products of inertia {OTHER_ORDER}"}
+
+
+def test_bodies_that_would_all_be_spheres_are_no_rule() -> None:
+    """A rate of damping without a gyroscopic term, where the least moment happens to be one."""
+    tensors = {"damped": (1.0, 1.2, 2.1), "free": (1.1, 1.3, 1.9)}
+    loads: dict[str, Any] = {"damped": {"damping": 0.2}, "free": {}}
+    cases = [case(n, loads[n], 1.0, np.diag(m).tolist()) for n, m in tensors.items()]
+
+    def wrong(system: System, states: State) -> Acceleration:
+        rate = -float(system.load.damping) * states.angular_velocity
+        return Acceleration(rate, forward_dynamics(system, states).linear)
+
+    found = causes_over(wrong, tuple(cases))
+    assert "taken as equal" not in "".join(found.values())
+    assert "omega-dot has -d omega, whatever the inertia" in found["damped"]
