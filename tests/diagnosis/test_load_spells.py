@@ -65,6 +65,20 @@ def test_a_load_that_stops_in_some_runs_alone_is_not_named() -> None:
     assert not any("first" in text for text in causes(step, PLANS))
 
 
+def test_it_is_named_of_a_scheme_that_is_not_declared() -> None:
+    """Caught: a sound first-order scheme that is taken for a slip in another."""
+    until = by_number(applied_torque, lambda n, t, x: float(n <= 14))
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        _, v = until(system, motion, q, v, h, n)
+        return motion.normalize(q + h * motion.coordinate_rate(q, v)), v
+
+    found = causes(step, PLANS, declared=False, scheme="semi-implicit Euler on the quaternion")
+    assert found == ["in the steps, the applied torque acts in the first 14 steps of a run alone"]
+
+
 def test_a_load_that_acts_now_and_then_has_no_last_step() -> None:
     step = by_number(applied_torque, lambda n, t, x: float(np.cos(n * n) > 0.0))
     assert causes(step, PLANS) == []

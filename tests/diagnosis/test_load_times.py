@@ -12,12 +12,13 @@ from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.operators.operands import gyroscopic
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.kept_run import SchemeOf
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.reference_impl.coordinates import from_coordinates
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
-from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
@@ -33,10 +34,13 @@ PLANS = ((0.031, 1), (0.02, 1), (0.013, 1), (0.009, 2), (0.005, 3))
 
 
 def causes(
-    step: Step, plans: tuple[tuple[float, int], ...] = PLANS, declared: bool = True
+    step: Step,
+    plans: tuple[tuple[float, int], ...] = PLANS,
+    declared: bool = True,
+    scheme: str = EULER,
 ) -> list[str]:
     """Of all loaded bodies, where runs fail that are not stepped as they should be."""
-    by = SchemeOf(SCHEMES[EULER], "com-world")
+    by = SchemeOf(scheme_named(scheme), "com-world")
     runs = [kept(one, step, h, every) for one in LOADED for h, every in plans]
     runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
     own = Integrator("own", EULER if declared else None, dict.fromkeys(CHANNELS, 1))

@@ -75,8 +75,22 @@ def _drift_kick_drift(stages: int) -> Step:
     return step
 
 
+def straight(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """Semi-implicit Euler with one straight step of the quaternion, which is then made unit."""
+    v = v + h * motion.acceleration(q, v)
+    return motion.normalize(q + h * motion.coordinate_rate(q, v)), v
+
+
+def drift_first(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """Semi-implicit Euler the other way: the place by the old velocity, then the velocity there."""
+    q = motion.retract(q, h * v)
+    return q, v + h * motion.acceleration(q, v)
+
+
 def _schemes() -> dict[str, Scheme]:
     found = list[tuple[str, int, Step]]()
+    found.append(("semi-implicit Euler on the quaternion", 1, straight))
+    found.append(("semi-implicit Euler, places before velocities", 1, drift_first))
     for name, (order, rows, weights) in TABLEAUS.items():
         found.append((f"{name} on the quaternion", order, on_quaternion(rows, weights)))
         if order < 3:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
+from omegadot.diagnosis.stepping.explicit_schemes import drift_first, scheme_named, straight
 from omegadot.diagnosis.stepping.on_quaternion import Rate, Rows, at_unit, on_quaternion
 from omegadot.diagnosis.stepping.slips.tableau_slips import tableau_slips, wrong_signs
 from omegadot.diagnosis.stepping.slips.unit_slips import unit_slips
@@ -105,11 +105,6 @@ def _explicit(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Arr
     return motion.retract(q, h * v), v + h * motion.acceleration(q, v)
 
 
-def _drift_first(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-    q = motion.retract(q, h * v)
-    return q, v + h * motion.acceleration(q, v)
-
-
 def _mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     after = v + h * motion.acceleration(q, v)
     return motion.retract(q, 0.5 * h * (v + after)), after
@@ -125,11 +120,6 @@ def _mean_place(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[A
     after = v + h * motion.acceleration(q, v)
     mean = 0.5 * (v + after)[..., :-3]
     return motion.retract(q, h * np.concatenate((mean, after[..., -3:]), axis=-1)), after
-
-
-def _straight(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-    v = v + h * motion.acceleration(q, v)
-    return motion.normalize(q + h * motion.coordinate_rate(q, v)), v
 
 
 def _old_omega(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
@@ -160,11 +150,11 @@ EULER: dict[str, Step] = {
     "the attitude moves by the omega of the step's start": _old_omega,
     "the position moves by the velocity of the step's start": _old_velocity,
     "attitude and position move by the velocities of the step's start (explicit Euler)": _explicit,
-    "attitude and position move first, by the velocities of the step's start": _drift_first,
+    "attitude and position move first, by the velocities of the step's start": drift_first,
     "the attitude moves by the mean of the omega before and after": _mean_omega,
     "the position moves by the mean of the velocities before and after": _mean_place,
     "attitude and position move by the mean of the velocities before and after": _mean_velocity,
-    "the attitude moves by one straight step of the quaternion, normalised": _straight,
+    "the attitude moves by one straight step of the quaternion, normalised": straight,
     "the turn of a step is taken by the third-order series of the exponential": _by_third_order,
 }
 OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER, **tableau_slips()}
