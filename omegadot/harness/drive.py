@@ -51,6 +51,7 @@ class CaseResult:
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
+    own_rounding: the bound of omega-dot by the engine's own rounding, where that was looked at.
     before: what had been loaded before the case (""), before each sibling, by what was changed, and
     before the case was loaded again (RELOADED).
     """
@@ -77,6 +78,7 @@ class CaseResult:
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"
     via: str = ""
+    own_rounding: float | None = None
     before: dict[str, LoadedBefore] = field(default_factory=dict)
 
     def first_failure(self) -> Answer | None:

@@ -35,6 +35,7 @@ from omegadot.harness.outcome import (
     tasks_of,
 )
 from omegadot.harness.plan import Engine
+from omegadot.harness.requests.nudged import request_nudged, rounding_may_decide
 from omegadot.harness.requests.repeats import OTHERS, request_again
 from omegadot.harness.requests.step_probes import probe_steps
 from omegadot.harness.requests.truth_requests import (
@@ -192,7 +193,8 @@ class Runner:
     def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
         """Judge a case again with finer steps, as long as these can still decide something.
 
-        Then with the axes of the world turned, where these can.
+        Then with the axes of the world turned, where these can, and at states that are a few
+        roundings off.
         """
         finer: dict[str, Refinements] = {}
         for _ in range(MOST_HALVINGS + MORE_OF_ONE):
@@ -207,7 +209,22 @@ class Runner:
             if not any(done):
                 break
             judged = self.judge(pending, finer)
-        return self._in_other_worlds(pending, judged, finer)
+        return self._rounded(pending, self._in_other_worlds(pending, judged, finer), finer)
+
+    def _rounded(
+        self, pending: PendingCase, judged: JudgedCase, finer: dict[str, Refinements]
+    ) -> JudgedCase:
+        """Judge a case again where an engine's own rounding can decide; see `own_rounding`."""
+        futures = []
+        for found in judged.engines:
+            if judged.truth is not None and rounding_may_decide(judged.case, found):
+                states = evaluation_states_of(judged.case, judged.truth, self.request.seed)
+                driver = self.engines.drivers[found.engine.name]
+                call = partial(request_nudged, driver, judged.case, states, found.result)
+                futures.append(self.engines.submit(found.engine.name, call))
+        for future in futures:
+            outcome_of(future)
+        return self.judge(pending, finer) if futures else judged
 
     def _in_other_worlds(
         self, pending: PendingCase, judged: JudgedCase, finer: dict[str, Refinements]

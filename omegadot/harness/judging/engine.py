@@ -7,6 +7,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.states import equation, model
 from omegadot.gates.states.equation import EvaluationStates
+from omegadot.gates.states.own_rounding import of_own_rounding
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.requests.siblings import rows_of_siblings
 from omegadot.reference_impl.system import Acceleration, State
@@ -46,5 +47,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
 
 
 def held(result: CaseResult, rows: list[Row]) -> list[Row]:
-    """The rows at the bounds of a body that went in as it did."""
-    return [model.of_read_body(row) for row in rows] if result.via else rows
+    """The rows at the bounds of a body that went in as it did, and of the engine's own rounding."""
+    rows = [model.of_read_body(row) for row in rows] if result.via else rows
+    own = result.own_rounding
+    return rows if own is None else [of_own_rounding(row, own) for row in rows]
