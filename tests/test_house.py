@@ -27,7 +27,16 @@ ROOMS["commands"] = set(ROOMS)
 THIRD_PARTY = {
     "scenarios": {"numpy", "scipy", "pydantic", "pydantic_core", "defusedxml"},
     "reference_impl": {"numpy", "scipy"},
-    "adapters": {"numpy", "scipy", "mujoco", "pinocchio", "dartpy", "pydrake", "exudyn"},
+    "adapters": {
+        "numpy",
+        "scipy",
+        "mujoco",
+        "pinocchio",
+        "dartpy",
+        "pydrake",
+        "exudyn",
+        "Basilisk",
+    },
     "workers/engine_end": {"numpy", "scipy"},
 }
 STANDARD = set(sys.stdlib_module_names)
@@ -114,7 +123,9 @@ def test_lower_rooms_stay_small(room: str) -> None:
         assert outside <= THIRD_PARTY[room], f"{file.name} imports {outside}"
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn"])
+@pytest.mark.parametrize(
+    "engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk"]
+)
 def test_engines_are_imported_in_functions_only(engine: str) -> None:
     for file in files_of("adapters"):
         for node in parsed(file).body:

@@ -33,6 +33,7 @@ BUILT_IN: dict[str, str] = {
 EXTRAS: dict[str, str] = {
     "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
     "exudyn": "omegadot.adapters.exudyn.adapter:ExudynAdapter",
+    "basilisk": "omegadot.adapters.basilisk.adapter:BasiliskAdapter",
 }
 """Engines that an extra of the same name installs: ``pip install 'omegadot[drake]'``."""
 NODE: dict[str, str] = {
@@ -42,7 +43,7 @@ NODE: dict[str, str] = {
 OPTIONAL = {**EXTRAS, **NODE}
 OURS = {**BUILT_IN, **OPTIONAL}
 # The module of an optional engine, by which it is known to be there.
-_MODULES = {"drake": "pydrake", "exudyn": "exudyn"}
+_MODULES = {"drake": "pydrake", "exudyn": "exudyn", "basilisk": "Basilisk"}
 
 
 class AdapterError(ValueError):

@@ -22,6 +22,7 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[test]' && .venv/bin/pytest",
     ".venv/bin/pip install -e '.[drake]'",
     ".venv/bin/pip install -e '.[exudyn]'",
+    ".venv/bin/pip install -e '.[basilisk]'",
     ".venv/bin/omegadot engines --install node",
 )
 

@@ -19,6 +19,7 @@ PACKAGES = {
     "dart": "dartpy",
     "drake": "drake",
     "exudyn": "exudyn",
+    "basilisk": "bsk",
 }
 # More than any minor version of Python has had.
 MOST_RELEASES = 40

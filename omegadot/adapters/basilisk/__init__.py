@@ -1,0 +1,1 @@
+"""Basilisk behind the protocol."""
