@@ -12,6 +12,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.ends.run_ends import RunEnd, other_ends
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.gates.case import Case, Sweep
+from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reference_impl.stepping import step_body
@@ -79,6 +80,36 @@ def found(*shifts: int, spoiled: str = "", last: str = "") -> tuple[str, set[str
 def test_another_step_at_the_end_of_every_run_is_one_cause(shift: int, text: str) -> None:
     """Caught: of an interval one step short, "the last interval is stepped in full"."""
     assert found(shift) == (text, {"free", "driven", "top"})
+
+
+FIELDS = {
+    "orientation": "attitude",
+    "angular_velocity": "omega",
+    "position": "position",
+    "linear_velocity": "linear velocity",
+}
+
+
+@pytest.mark.parametrize("field", FIELDS)
+def test_one_field_of_another_step_at_the_end_is_one_cause(field: str) -> None:
+    """Caught: "the attitude of the last sample alone is wrong", by other numbers in each run."""
+    falling = (case("falling", {"gravity": GRAVITY}), case("thrown", {"gravity": [0.3, 2.0, 0.0]}))
+    plans = [(one, plan) for one in (*CASES, *falling) for plan in PLANS]
+    pairs = [(run_of(*how, 0), run_of(*how, -1)[1]) for how in plans]
+    ends = [_with(run[1], field, before) for run, before in pairs]
+    cause = other_ends(OWN, ends, [run[0] for run, _ in pairs])
+    assert cause is not None
+    text = (
+        f"the {FIELDS[field]} of the last sample of every run is that of the step before its time"
+    )
+    assert cause.statement == text
+    assert cause.names >= {"falling", "thrown"}
+
+
+def _with(end: RunEnd, field: str, other: RunEnd) -> RunEnd:
+    """With one field of another run's last sample; on a pivot the others follow from it."""
+    state = State(**{**vars(end.state), field: getattr(other.state, field)})
+    return replace(end, state=place_on_pivot(end.system, state))
 
 
 @pytest.mark.parametrize(("shift", "off"), [(1, "further than"), (-1, "before")])

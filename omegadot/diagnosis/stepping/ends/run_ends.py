@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,9 +30,21 @@ from omegadot.reference_impl.system import Array, State, System
 MISSING = "the last step is missing: the end is the state one step before"
 EVERY = "the last sample of every run is the state {} its time"
 OTHER = "the last step of every run is by {}, not by {}"
+OF_FIELD = "the {} of the last sample of every run {} of the step {} its time"
+FIELDS: Mapping[tuple[str, ...], tuple[str, str]] = {
+    ("attitude",): ("attitude", "is that"),
+    ("omega",): ("omega", "is that"),
+    ("position",): ("position", "is that"),
+    ("velocity",): ("linear velocity", "is that"),
+    ("attitude", "position"): ("attitude and position", "are those"),
+    ("omega", "velocity"): ("omega and linear velocity", "are those"),
+    ("position", "velocity"): ("position and linear velocity", "are those"),
+    ("omega", "attitude"): ("omega and attitude", "are those"),
+}
 SHORT = "the last sample, after an interval shorter than the others, is the state {} its time"
 MOST_SHIFT = 3  # steps
 COUNTS = ("", "one step", "two steps", "three steps")
+ROTATION = ("omega", "attitude")
 LEAST = 3  # runs, of two scenarios at least, whose last sample is another step's
 
 
@@ -100,6 +112,12 @@ def other_ends(
                 if shown:
                     names = frozenset(shown - _wrong_before(kept, by))
                     return Ends(statement_of(shift, short), names)
+        for fields, (what, are) in FIELDS.items():
+            for shift, where in ((-1, "before"), (1, "after")):
+                shown = _shown(ends, by, shift, False, of=fields)
+                if shown:
+                    text = OF_FIELD.format(what, are, where)
+                    return Ends(text, frozenset(shown - _wrong_before(kept, by)))
         others = [one for one in SCHEMES.values() if by.coordinates in one.coordinates]
         shows = {one.name: _shown(ends, by, 0, False, one) for one in others if one != by.scheme}
         shows = {name: shown for name, shown in shows.items() if shown}
@@ -119,14 +137,29 @@ def statement_of(shift: int, short: bool) -> str:
 
 
 def _shown(
-    ends: Sequence[RunEnd], by: SchemeOf, shift: int, short: bool, last: Scheme | None = None
+    ends: Sequence[RunEnd],
+    by: SchemeOf,
+    shift: int,
+    short: bool,
+    last: Scheme | None = None,
+    of: Sequence[str] = CHANNELS,
 ) -> set[str]:
-    """The scenarios that show it; none where one run contradicts it. last: of the last step."""
+    """The scenarios that show it; none where one run contradicts it.
+
+    last: the scheme of the last step.  of: what is of another step.
+    """
     names, count = set[str](), 0
     # of the runs that fail those of few steps rule most out
     for end in sorted(ends, key=lambda one: (not one.fails, one.steps)):
         moved = end.is_short or not short
-        if not _is_after(end, by, end.steps + shift * moved, last):
+        rest = [channel for channel in CHANNELS if channel not in of]
+        if rest and end.system.load.pivot is not None:  # attitude and omega make the others
+            rest, of_this = ([c for c in some if c in ROTATION] for some in (rest, of))
+        else:
+            of_this = [*of]
+        if not _is_after(end, by, end.steps + shift * moved, last, of_this):
+            return set()
+        if rest and not _is_after(end, by, end.steps, None, rest):
             return set()
         if moved and not _is_after(end, by, end.steps):
             names.add(end.name)
@@ -134,10 +167,17 @@ def _shown(
     return names if count >= LEAST and len(names) > 1 else set()
 
 
-def _is_after(end: RunEnd, by: SchemeOf, steps: int, last: Scheme | None = None) -> bool:
+def _is_after(
+    end: RunEnd,
+    by: SchemeOf,
+    steps: int,
+    last: Scheme | None = None,
+    of: Sequence[str] = CHANNELS,
+) -> bool:
     """Whether so many steps of the scheme lead from the sample before to the last.
 
-    Below none they lead from the last to the one before. last: the scheme of the last of them.
+    Below none they lead from the last to the one before. last: the scheme of the last of them.  of:
+    what of the state is compared.
     """
     start, came = (end.state[:1], end.state[1:])[:: -1 if steps < 0 else 1]
     steps = abs(steps)
@@ -153,7 +193,7 @@ def _is_after(end: RunEnd, by: SchemeOf, steps: int, last: Scheme | None = None)
         "velocity": came.linear_velocity - found.linear_velocity,
         "position": came.position - found.position,
     }
-    return all(bool(norm(apart[c])[0] <= SLACK * end.bounds[c]) for c in CHANNELS)
+    return all(bool(norm(apart[c])[0] <= SLACK * end.bounds[c]) for c in of)
 
 
 def _wrong_before(kept: Sequence[KeptRun], by: SchemeOf) -> set[str]:
