@@ -12,9 +12,16 @@ from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase, source_of
 from omegadot.diagnosis.over_scenarios import OverScenarios
+from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.loads.substeps import part_named, part_of, substep_cause
 from omegadot.diagnosis.stepping.vanishing.follows import Followed
-from omegadot.diagnosis.stepping.vanishing.jumps import STOPPED, jump_cause, jumps
+from omegadot.diagnosis.stepping.vanishing.jumps import (
+    BEGINS_UNSIGNED,
+    STOPPED,
+    UNSIGNED,
+    jump_cause,
+    jumps,
+)
 from omegadot.diagnosis.stepping.vanishing.kinematics import (
     kinematic_causes,
     moves_by_cause,
@@ -32,6 +39,11 @@ OF_LOAD = re.compile(
 WHOLE = "; forward dynamics has it whole"
 IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
+
+
+def _signed(run: KeptRun) -> bool:
+    """Whether a sample after the start has a quaternion with a negative scalar part."""
+    return bool(np.any(run.state.orientation[1:, 0] < 0.0))
 
 
 class StepCauses:
@@ -82,6 +94,8 @@ class StepCauses:
         that damping; where what is wrong with it is not known, nothing is named.
         """
         found, load = jump_cause(steps, self._kept.beginning), steps.system.load
+        if found == UNSIGNED and any(_signed(run) for run in self._over.runs.kept):
+            found = BEGINS_UNSIGNED
         if found not in ("", STOPPED) or not np.any(load.damping) or not np.any(steps.jumps):
             return either([found])
         source = self._kept.source

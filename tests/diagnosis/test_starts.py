@@ -10,6 +10,10 @@ import pytest
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, WORLD_TORQUE, case
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.in_steps import StepCauses
+from omegadot.diagnosis.kept_case import KeptCase
+from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.stepping.ends.starts import other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
@@ -234,3 +238,29 @@ def test_what_begins_elsewhere_from_minus_q_alone_is_of_the_same_rule() -> None:
     other = replace(one, initial=negated)
     assert found.makes(run_of(other, unsigned, same, log_given=True), negated)
     assert not found.makes(run_of(other, same, same, log_given=True), negated)
+
+
+def unsigned(state: State) -> State:
+    q = state.orientation
+    return replace(state, orientation=np.concatenate((np.abs(q[..., :1]), q[..., 1:]), axis=-1))
+
+
+@pytest.mark.parametrize(
+    ("start", "reported", "text"),
+    [(unsigned, same, "a run begins with"), (same, unsigned, "is reported without its sign")],
+)
+def test_a_sign_that_starts_lose_is_in_later_samples(
+    start: Change, reported: Change, text: str
+) -> None:
+    """Caught: of a scheme that is not known, a start without the sign that is called a report."""
+    one = CASES[1]
+    steps = steps_of(one, lambda s: reported(start(s)))
+    over = OverScenarios()
+    through_none = np.array([-0.01, -0.1, 0.7, -0.4])  # of which the scalar part falls
+    state = replace(one.initial, orientation=through_none / np.linalg.norm(through_none))
+    over.runs.kept.append(run_of(replace(one, initial=state), start, reported, False))
+    integrator = Integrator("own", None, dict.fromkeys(CHANNELS, 1))
+    kept = KeptCase(one.name, integrator, "", None, False, False, steps)
+    (found,) = StepCauses(Across(), over, kept, list).jumped(steps)
+    assert "the quaternion's scalar part" in found
+    assert text in found

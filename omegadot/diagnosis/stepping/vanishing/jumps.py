@@ -35,6 +35,8 @@ QUANTITIES = (
     ("position", "the position", "m"),
 )
 STOPPED = "omega is set to zero"
+UNSIGNED = "the quaternion's scalar part is reported without its sign"
+BEGINS_UNSIGNED = "a run begins with the quaternion's scalar part without its sign"
 NEARER = 0.5  # of what a misread run is off by: a coarse scheme leaves something too
 
 
@@ -71,7 +73,7 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
         and np.any(before.orientation[:, 0] < 0.0)
         and np.all(stays(replace(steps, states=replace(before, orientation=unsigned)), after))
     ):
-        return "the quaternion's scalar part is reported without its sign"
+        return UNSIGNED
     w, new = before.angular_velocity, after.angular_velocity
     v, moved = before.linear_velocity, after.linear_velocity
     between = steps.moved
