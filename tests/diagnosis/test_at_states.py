@@ -19,9 +19,10 @@ from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.states.equation import random_states
 from omegadot.reference_impl.energy import rotational_kinetic_energy
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import applied_torque
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -162,3 +163,47 @@ def test_a_few_states_along_a_trajectory_have_the_condition_of_the_drawn_ones() 
     texts = [across.cause(one.name, source) for source in (FORWARD, ALONG)]
     due = "the gyroscopic term is missing, but only where |omega_x| is above a limit"
     assert [text.partition(" between ")[0] for text in texts] == [due, due]
+
+
+def near_identity(system: System, x: State) -> Array:
+    """(n,) rad, the turn from the identity."""
+    return 2.0 * np.arccos(np.clip(np.abs(x.orientation[:, 0]), 0.0, 1.0))
+
+
+def in_body(x: State, load: Array, twice: float) -> Array:
+    """``1 - [t] + twice [t]^2`` times a load in world axes, t the turn from the identity."""
+    half = x.orientation * np.where(x.orientation[:, :1] < 0.0, -1.0, 1.0)
+    size = norm(half[:, 1:])[:, None]
+    t = half[:, 1:] / size * 2.0 * np.arctan2(size, half[:, :1])
+    once = -np.cross(t, load + 0.0 * t)
+    return np.asarray(load + once - twice * np.cross(t, once))
+
+
+@pytest.mark.parametrize(("twice", "order"), [(0.0, "first"), (0.5, "second")])
+def test_a_series_for_small_turns_of_loads_is_named(twice: float, order: str) -> None:
+    """Caught: "omega-dot is off at some states", as what is off is little at the least turns."""
+
+    def found(system: System, x: State) -> Acceleration:
+        load, arm = system.load, np.asarray(lever(system)) * (system.load.pivot is not None)
+        pull = float(system.body.mass) * np.asarray(load.gravity)
+        by = [
+            in_body(x, one, twice) - rotate_inverse(x.orientation, one)
+            for one in (np.asarray(load.torque_world), pull)
+        ]
+        small = near_identity(system, x)[:, None] < 0.25
+        return with_torque(system, x, np.where(small, by[0] + np.cross(arm, by[1]), 0.0))
+
+    texts = set(causes_over(found).values())
+    assert len(texts) == 1
+    start = f"loads in world axes are turned into the body by a series of the {order} order, but"
+    assert texts.pop().startswith(f"{start} only where the angle from the identity is below")
+
+
+def test_an_error_that_fades_has_no_limit_where_it_is_seen_no_more() -> None:
+    """Caught: a limit at the turn below which an error of the sixth power is within rounding."""
+
+    def found(system: System, x: State) -> Acceleration:
+        off = 1e-8 * near_identity(system, x)[:, None] ** 6 * np.ones(3)
+        return with_torque(system, x, off)
+
+    assert not any("the angle from the identity" in text for text in causes_over(found).values())

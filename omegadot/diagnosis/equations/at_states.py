@@ -15,6 +15,7 @@ from omegadot.diagnosis.equations.searched import PLAIN, Searched
 from omegadot.diagnosis.equations.worded import worded
 from omegadot.diagnosis.wording.conditions import Part, only_where
 
+APART, FEW = 2.0, 8  # times the widest gap between neighbours on a scale of powers; of so many
 OF_STATES = (FORWARD, ALONG)  # answers at states, of one equation
 
 
@@ -105,6 +106,12 @@ def where_wrong(evidence: Evidence, every: Sequence[Evidence]) -> str:
 
 
 def _fades(evidence: Evidence) -> bool:
-    """Whether what is wrong sinks into rounding: the states where it does are those of no limit."""
+    """Whether what is wrong sinks into rounding: the states where it does are those of no limit.
+
+    It does not where the least of it is so far from rounding that others would lie in between.
+    """
     shares = evidence.shares(evidence.true)
-    return bool(np.any((shares > 1.0) & (shares < FAR_FROM_ROUNDING)))
+    off = np.sort(np.log(shares[shares > 1.0]))
+    if not len(off) or off[0] >= np.log(FAR_FROM_ROUNDING):
+        return False
+    return len(off) < FEW or bool(off[0] <= APART * np.max(np.diff(off)))

@@ -20,7 +20,7 @@ from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import applied_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.rotations import rotate, rotate_inverse, rotation_between
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -132,6 +132,27 @@ def _reported() -> Iterator[Reading]:
     )
 
 
+def _turned_by_series() -> Iterator[Reading]:
+    """Loads in world axes by ``1 + [t]`` or ``1 + [t] + [t]^2 / 2``, t the turn of at most pi."""
+
+    def turned(order: int, t: Array, load: Array) -> Array:
+        once = cross(load + 0.0 * t, t)
+        return np.asarray(load + once + (0.5 * cross(once, t) if order > 1 else 0.0))
+
+    def made(order: int, e: Evidence) -> Acceleration:
+        q, load = e.states.orientation, e.system.load
+        t, pull = rotation_between(np.eye(1, 4), q), e.system.body.mass * load.gravity
+        off, pulled = (
+            turned(order, t, one) - rotate_inverse(q, one) for one in (load.torque_world, pull)
+        )
+        arm = lever(e.system) if load.pivot is not None else np.zeros(3)
+        return pushed(e, off + cross(arm, pulled))
+
+    for order, named in ((1, "first"), (2, "second")):
+        text = f"loads in world axes are turned into the body by a series of the {named} order"
+        yield Reading(text, partial(made, order))
+
+
 def _not_solved() -> Iterator[Reading]:
     """A torque that is taken as a rate, or divided by the inertia twice."""
     terms: dict[str, Callable[[System, State], Array]] = {
@@ -183,6 +204,7 @@ def _misread(one: Misreading) -> Iterator[Reading]:
 
 READINGS = (
     *_reported(),
+    *_turned_by_series(),
     *_not_solved(),
     *_mixed(),
     *(Reading(text, made) for text, made in turned_inertias()),
