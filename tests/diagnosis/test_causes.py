@@ -18,7 +18,7 @@ from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
-from omegadot.diagnosis.wording.laws import law_of
+from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
@@ -175,3 +175,25 @@ def test_numbers_that_are_rounded_have_a_law(rounded: Any, text: str) -> None:
     requested = np.random.default_rng(0).lognormal(0.0, 3.0, 14)
     pairs = [(np.array([x]), np.array([float(rounded(x))])) for x in requested]
     assert law_of(pairs, "the damping", "N m s/rad") == f"the damping is {text}"
+
+
+def test_a_rate_of_decay_that_goes_as_a_size_keeps_its_sign() -> None:
+    """Caught: "omega-dot has c omega in it, where c is 3 times the damping over the trace"."""
+    damped = [
+        case(f"damped-{k}", {"damping": d}, 1.0, np.diag(m).tolist())
+        for k, (d, m) in enumerate(
+            (
+                (0.3, (1.0, 1.6, 2.1)),
+                (1.7, (0.7, 1.1, 1.3)),
+                (29.0, (6.0, 15.0, 18.0)),
+                (0.1, (30.0, 40.0, 60.0)),
+                (4.0, (0.2, 0.3, 0.4)),
+                (0.02, (2.0, 2.5, 2.7)),
+            )
+        )
+    ]
+    rates = [3.0 * float(c.system.load.damping) / np.trace(c.system.body.inertia) for c in damped]
+    features = [features_of(one.system, one.initial) for one in damped]
+    made = power_laws("omega-dot has -0.5 omega in it", features, np.array(rates))
+    texts = [text for text, due in made if np.allclose(due, rates)]
+    assert any("has -c omega in it, where c is 3 times the damping over" in text for text in texts)

@@ -222,7 +222,9 @@ def _worded(text: str, sizes: Sequence[tuple[str, str, float]], size: float) -> 
     shown = " over ".join([shown.replace(" times 1", ""), *below])
     if scaled:
         return f"{what} is scaled by a factor that goes as {shown}"
-    return f"{NUMBER.sub('c', text, count=1)}, where c is {shown}"
+    first = NUMBER.search(text)  # a rate of decay is stated with its sign
+    c = "-c" if first is not None and first[0].startswith("-") and size > 0.0 else "c"
+    return f"{NUMBER.sub(c, text, count=1)}, where c is {shown}"
 
 
 def _power(name: str, power: float) -> str:
