@@ -343,3 +343,9 @@ def test_bodies_that_would_all_be_spheres_are_no_rule() -> None:
     found = causes_over(wrong, tuple(cases))
     assert "taken as equal" not in "".join(found.values())
     assert "omega-dot has -d omega, whatever the inertia" in found["damped"]
+
+
+def test_products_that_all_have_the_wrong_sign_are_named() -> None:
+    """Caught: "-2 P is added to the inertia", with P the inertia without its diagonal."""
+    texts = set(causes_over(using(lambda t: 2.0 * np.diag(np.diag(t)) - t, SPIN), SIZES).values())
+    assert texts == {"in the gyroscopic term, all products of inertia have the wrong sign"}

@@ -45,6 +45,11 @@ def spin_hypotheses() -> Iterator[Hypothesis]:
         lambda f, s: {"spin": diagonal(f.spin)},
     )
     yield of_form(
+        "in the gyroscopic term, all products of inertia have the wrong sign",
+        "spin",
+        lambda f, s: {"spin": 2.0 * diagonal(f.spin) - f.spin},
+    )
+    yield of_form(
         "the gyroscopic term is formed with the inertia about the centre of mass, "
         "not about the pivot",
         "spin",
