@@ -15,14 +15,17 @@ import pytest
 
 from omegadot.gates.bounds.scales import (
     EPS,
+    ROUNDINGS_PER_EVALUATION,
     ROUNDINGS_PER_STEP,
+    angular_size,
     between_ellipsoids,
     products_in_momentum,
 )
 from omegadot.gates.steps.limits import Limit, Tolerated, _extrapolants, limits
 from omegadot.gates.steps.probe import DOUBLE, Probe, probe_of
 from omegadot.gates.steps.vanishing_step import _common_factor, rows
-from omegadot.reference_impl.rotations import rotation_matrix
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import exp_quaternion, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System
@@ -282,3 +285,19 @@ def test_what_is_reported_of_the_limit() -> None:
     assert reported(on, requested, omega=1.01) == {
         "omega": f"as the step vanishes, its rate is not the equation's: {off}, {where}"
     }
+
+
+def test_from_rest_a_body_moves_by_what_rounding_makes_of_its_acceleration() -> None:
+    """Caught: the attitude's rate at rest, held to less than its omega is rounded by in a step."""
+    on = system(1e-9, 1.0, 1.0, torque_body=np.array([0.0, 1.0, 0.0]))
+    still = probe(on, [0.0, 0.0, 0.0])
+    true = acceleration_of(on)(still.states)
+    size = ROUNDINGS_PER_EVALUATION * EPS * angular_size(on, still.states, true)
+    h, random, shares = still.timesteps[..., None], np.random.default_rng(3), list[float]()
+    for _ in range(100):
+        off = 0.3 * size[:, None, None] * random.uniform(-1.0, 1.0, (STEPS, 1))
+        w = h * (true.angular[:, None] + off * np.array([1.0, 0.0, 0.0]))
+        stepped = State(exp_quaternion(0.5 * h * w), w, np.zeros_like(w), np.zeros_like(w))
+        shares.append(float(np.max(limits(on, still, stepped)["attitude"].shares())))
+    assert max(shares) < 1.0
+    assert max(shares) > 0.01  # such rounding is seen

@@ -141,9 +141,10 @@ def limits(
     |J omega| / lambda. One that is not known may step the momentum about the world's origin, which
     holds ``m x times v`` besides. One that puts omega back on its ellipsoids leaves it open in one
     direction (`between_ellipsoids`). One that takes velocities from two places rounds them by parts
-    of these over h (`Roundings`). A velocity that is nothing at the start has no size: an
-    accuracy is absolute there, in rad/s or m/s. Single precision has no steps that are short
-    against that of a thin body: there the bound is infinite.
+    of these over h (`Roundings`). What moves a body from rest is the velocity within the step, and
+    that is rounded by h times the rounding of its rate. A velocity that is nothing at the start has
+    no size: an accuracy is absolute there, in rad/s or m/s. Single precision has no steps that are
+    short against that of a thin body: there the bound is infinite.
     """
     states, h = probe.states, probe.timesteps
     before = states[:, None]
@@ -168,7 +169,12 @@ def limits(
     place = norm(states.position) + lever + norm(v) / np.maximum(norm(w), least_turn)
     of_turns = step / h * roundings.of_turns
     of_places = step * norm(states.position)[:, None] / h * roundings.of_places
-    more = {"omega": of_turns, "linear_momentum": of_places + lever * of_turns}
+    more = {
+        "omega": of_turns,
+        "linear_momentum": of_places + lever * of_turns,
+        "attitude": h**2 * of_omega[:, None],
+        "position": h**2 * (of_velocity + lever * of_omega)[:, None],
+    }
     parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
         "attitude": (turn, w, step * np.ones(len(w)), step * turning),
         "omega": (spin, true.angular, step * (spinning + carried), of_omega),
