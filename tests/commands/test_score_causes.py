@@ -19,6 +19,7 @@ from omegadot.commands.score.score import case_given
 
 NAMES = "t,wx,wy,wz,qw,qx,qy,qz"
 TIMES = 0.1 * np.arange(101)
+OTHERS = "others that make the same motion"
 
 
 @pytest.fixture
@@ -72,7 +73,11 @@ def test_a_mistake_of_the_equation_is_named(causes, cause, columns):
     states = brick_with(OF_A_BRICK[cause])
     if cause == "the gyroscopic term is missing" and columns == 4:
         return  # a constant omega: the gyroscopic term is not what is seen alone
-    assert causes(BRICK, TIMES, states[:, : columns - 1]) == [cause]
+    (found,) = causes(BRICK, TIMES, states[:, : columns - 1])
+    # without a torque no motion tells a body of equal moments from a missing gyroscopic term
+    several = "either " * (cause == "the gyroscopic term is missing")
+    assert found.startswith(several + cause)
+    assert bool(several) or found == cause
 
 
 SCENARIOS = ("heavy-top", "damped-tumble", "driven-body", "driven-world", "full-tensor")
@@ -80,7 +85,7 @@ SCENARIOS = ("heavy-top", "damped-tumble", "driven-body", "driven-world", "full-
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_every_mistake_is_named_or_nothing_is(causes, scenario):
-    """A named cause is the mistake that was made; several in each scenario are named."""
+    """A named cause is the mistake that was made, or one of several that make the same motion."""
     case = case_given(scenario)
     times = np.linspace(0.0, min(4.0, case.scenario.run.duration), 61)
     named = 0
@@ -89,7 +94,10 @@ def test_every_mistake_is_named_or_nothing_is(causes, scenario):
         state = _solved(mistake, times)
         states = np.column_stack([state.angular_velocity, state.orientation])
         found = causes(scenario, times, states)
-        assert found in ([], [mistake.statement]), mistake.statement
+        if found and (found[0].startswith("either ") or OTHERS in found[0]):
+            assert mistake.statement in found[0] or OTHERS in found[0]
+        else:
+            assert found in ([], [mistake.statement]), mistake.statement
         named += bool(found)
     assert named >= 3
 

@@ -148,7 +148,10 @@ def test_one_component_in_another_unit_is_refused(tmp_path, capsys):
         ((*MAPPED, "--name", "exact"), "an engine has this name"),
         ((*MAPPED, "--name", "mujoco"), "an engine has this name"),
         ((*MAPPED, "--name", "a\x1b[31m"), "a name of printable characters"),
-        ((*MAPPED, "--with", "bullet3"), "--with bullet3: no such engine; choose cannon-es, dart"),
+        (
+            (*MAPPED, "--with", "bullet3"),
+            "--with bullet3: no such engine; choose basilisk, cannon-es",
+        ),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),
         ((*MAPPED, "--map", "none.toml"), "--map none.toml is missing"),

@@ -26,6 +26,7 @@ from omegadot.diagnosis.equations.equation_form import (
 )
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.stepping import trace as diagnosis
+from omegadot.diagnosis.wording.kinds import either
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
@@ -40,6 +41,7 @@ LEAVES = 1e-3  # of an error, at most; schemes and digits leave something too
 SHOWS = 0.05  # of its largest, an error is compared first once it has grown to
 MOST_COMPARED = 60  # samples
 TURN, MOST_STEPS, FEW = 0.1, 1000, 10  # rad, of a coarse step; of these in all
+MOST_NAMED = 3  # of mistakes that make the same motion
 COARSE = 1e-2  # of an error, what coarse steps may leave of it
 MOST_TURNED = 1000.0  # rad, by the motion: beyond, each solution would take long
 MOST_EVALUATIONS = 20_000  # of a solution: an inertia that is far off may turn far faster
@@ -99,7 +101,14 @@ def _from_the_start(found: Measured) -> list[str]:
             fitting.append((mistake.statement, state))
     if any(_apart(found, a[1], b[1], whole, wrong) for a, b in pairwise(fitting)):
         return []
-    return list(dict.fromkeys(statement for statement, _ in fitting))[:1]
+    return _named(list(dict.fromkeys(statement for statement, _ in fitting)))
+
+
+def _named(statements: list[str]) -> list[str]:
+    """One sentence of mistakes that make the same motion, which no trace of it tells apart."""
+    if len(statements) <= MOST_NAMED:
+        return either(statements)
+    return [f"{statements[0]}, or one of {len(statements) - 1} others that make the same motion"]
 
 
 def _likely(found: Measured, rows: Rows, channels: list[str]) -> list[Mistake]:
