@@ -116,3 +116,15 @@ def test_wrong_answers_from_one_place_on_are_of_no_other_state() -> None:
         found = causes(answers)
         assert not any("has the omega-dot" in text for text in found)
         assert not any("have the omega-dot" in text for text in found)
+
+
+@pytest.mark.parametrize("count", [4, 8])
+def test_an_attitude_of_the_first_states_alone_is_named(count: int) -> None:
+    """Caught: "nothing else of the state than the attitude is seen to change it"."""
+
+    def answers(system: System, states: State, _: State) -> Acceleration:
+        first = states.orientation[PLACES % count]
+        return forward_dynamics(system, replace(states, orientation=first))
+
+    text = f"the attitude on its way in is that of the same place in the first {count} among those"
+    assert causes(answers) == {f"{text} that are requested together"}

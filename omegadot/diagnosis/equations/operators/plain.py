@@ -18,12 +18,23 @@ from omegadot.reference_impl.rotations import (
 from omegadot.reference_impl.system import Array, State
 
 DECIMALS = range(9)
+BLOCKS = (2, 4, 8, 16, 32, 64)  # states, as vectorised code takes them together
+
+
+def _repeated(count: int, v: Array) -> Array:
+    return v[np.arange(len(v)) % count]
+
+
 OF_OTHERS: dict[str, Callable[[Array], Array]] = {
     "that of the first state among those": lambda v: v[:1] + 0 * v,
     "that of the last state among those": lambda v: v[-1:] + 0 * v,
     "that of the state before among those": lambda v: np.roll(v, 1, axis=0),
     "that of the state after among those": lambda v: np.roll(v, -1, axis=0),
     "the mean over those": lambda v: np.mean(v, axis=0, keepdims=True) + 0 * v,
+    **{
+        f"that of the same place in the first {count} among those": partial(_repeated, count)
+        for count in BLOCKS
+    },
 }
 
 
