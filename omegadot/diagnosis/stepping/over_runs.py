@@ -13,6 +13,7 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
 from omegadot.diagnosis.stepping.loads.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.loads.fixed_substeps import fixed_substeps
 from omegadot.diagnosis.stepping.loads.kept_torques import kept_torque_causes
 from omegadot.diagnosis.stepping.loads.load_impulses import impulse_causes
 from omegadot.diagnosis.stepping.loads.load_spell_laws import spell_causes
@@ -99,6 +100,7 @@ def _searches(
     yield lambda: between_steps(by, runs)
     yield lambda: first_step_causes(by, runs)
     yield lambda: substeps_of_runs(integrator, by, chosen)
+    yield lambda: fixed_substeps(by, runs)
     yield lambda: either(limit_causes(by, runs))
     yield lambda: skipped_steps(by, runs)
     yield lambda: length_causes(by, runs)
