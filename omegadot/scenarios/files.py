@@ -58,6 +58,15 @@ def read_toml(path: Path, file: str) -> dict[str, Any]:
         raise ScenarioError(file, None, found, "save it in UTF-8") from None
 
 
+# What tomllib reports where a key has a value, and is a table further down.
+_TWICE = re.compile(r"Cannot mutate immutable namespace \((.*?)\)")
+
+
+def _given_twice(found: re.Match[str]) -> str:
+    key = ".".join(re.findall(r"'([^']*)'", found[1]))
+    return f"{key} is given as a value and again as a table"
+
+
 def _parse(text: str, file: str) -> dict[str, Any]:
     try:
         if deep := _DEEP_KEY.search(text):
@@ -67,6 +76,6 @@ def _parse(text: str, file: str) -> dict[str, Any]:
     except RecursionError:
         reason = "brackets nested too deep"
     except ValueError as error:  # TOMLDecodeError, or an integer of thousands of digits
-        reason = re.split(r"[\n;]", str(error))[0].rstrip(".")
+        reason = _TWICE.sub(_given_twice, re.split(r"[\n;]", str(error))[0].rstrip("."))
     advice = "correct it there, as toml.io describes the format"
     raise ScenarioError(file, None, f"not valid TOML ({printable(reason)})", advice) from None

@@ -89,6 +89,7 @@ def test_the_line_wins_over_the_file(tmp_path: Path) -> None:
         ("momentum-drift = 1\nmomentum_drift = 2", "given twice"),
         ("python = '3.12'", "no accuracy is required"),
         ("attitude = 1\n[attitude.x]\ny=1", "not valid TOML"),
+        ("a.b = [1]\n[[a.b]]\ny=1", "a.b is given as a value and again as a table"),
     ],
 )
 def test_bad_files_are_refused_in_one_sentence(tmp_path: Path, text: str, message: str) -> None:

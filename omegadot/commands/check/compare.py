@@ -9,7 +9,7 @@ from omegadot.commands.check.baseline import OF_A_SCENARIO, Change, changes
 from omegadot.commands.check.baseline_file import Baseline, Figures, RunKey, ScenarioFigures
 from omegadot.commands.check.result import PASSED, Check, Result, Subject, sweeps_of
 from omegadot.gates.case import Case, knobs_of
-from omegadot.reports.text.numbers import short
+from omegadot.reports.text.numbers import listed, short
 
 GATE = "baseline"
 MOST_LISTED = 3
@@ -85,10 +85,24 @@ def baseline_checks(
             yield Check(subject.name, case.name, GATE, key.integrator or None, **own)
 
 
+def _advice(failing: Sequence[str]) -> str:
+    if not failing:
+        return UPDATE
+    fails = "gate fails" if len(failing) == 1 else "gates fail"
+    return f"the {listed(failing)} {fails} here too, so mend that first; do not store these values"
+
+
 def compare(
-    check: Check, stored: Baseline | None, now: ScenarioFigures | None, version: str
+    check: Check,
+    stored: Baseline | None,
+    now: ScenarioFigures | None,
+    version: str,
+    failing: Sequence[str] = (),
 ) -> Result:
-    """Compare the figures of one run or one scenario with those that are stored."""
+    """Compare the figures of one run or one scenario with those that are stored.
+
+    failing: the gates that this run or scenario fails. Its new figures are not to be stored then.
+    """
     key = RunKey(check.integrator or "", check.timestep, check.accuracy)
     own = now.runs.get(key) if now else None
     was = stored.get(check.scenario) if stored is not None else None
@@ -98,13 +112,16 @@ def compare(
             return Result("skip", "no values, and none are stored")
         return Result("fail", "no values are stored for this; write them with --update-baseline.")
     versions = f"{check.engine} {was.version} -> {version}"
+    advice = _advice(failing)
     if own is None:
         gone = f"values are stored of {check.engine} {was.version}, and {version} gives none"
-        return Result("fail", f"{gone}: {UPDATE}.")
+        return Result("fail", f"{gone}: {advice}.")
     found = changes(known, own)
     if not found:
         return PASSED
     listed = "; ".join(change.sentence for change in found[:MOST_LISTED])
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     why = meaning(known, own, found, was.version == version)
-    return Result("fail", f"{versions}: {listed}{more}. Probably {why}. {UPDATE.capitalize()}.")
+    return Result(
+        "fail", f"{versions}: {listed}{more}. Probably {why}. {advice[0].upper()}{advice[1:]}."
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from omegadot.commands.check.compare import baseline_checks, compare
 from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
 from omegadot.commands.check.judge import results_of
 from omegadot.commands.check.result import (
+    GATES_OF_A_RUN,
+    GATES_OF_A_SCENARIO,
     Check,
     Registry,
     Result,
@@ -183,6 +186,17 @@ class Suite:
             if check.scenario == case.name and check.gate == BASELINE:
                 now = self.figures.get(check.engine, {}).get(check.scenario)
                 stored, version = self._stored[check.engine], self._versions[check.engine]
-                self._results[check] = compare(check, stored, now, version)
+                failing = self._failing_beside(check)
+                self._results[check] = compare(check, stored, now, version, failing)
             elif check.scenario == case.name:
                 self._results.setdefault(check, lost)
+
+    def _failing_beside(self, check: Check) -> list[str]:
+        """The gates that the run, or the scenario, of a baseline's check fails."""
+        found = []
+        for gate in (*GATES_OF_A_SCENARIO, *GATES_OF_A_RUN):
+            own = replace(check, gate=gate)
+            if own in self._results:
+                result = with_exceptions(own, self._results[own], self.selection.exceptions, False)
+                found += [gate] if result.verdict == "fail" else []
+        return found
