@@ -121,9 +121,10 @@ class Experiment:
         for one in self._mixed():
             self._along_states(one)
         for wrong, right in self._neighbours():
-            left = _distinct(limits_that_sort(self.seen))
-            if len(left) < 2 and all(one.narrow for one in left):
-                break  # of two that are narrow another line may decide
+            if not limits_that_sort(self.seen):
+                break
+            # Also where one limit is left, and narrow: on a single line many sizes go together,
+            # and another line contradicts all but the one that decides.
             self._along_systems(wrong, right)
         left = _distinct(limits_that_sort(self.seen))
         return str(left[0]) if len(left) == 1 and left[0].narrow else ""
