@@ -311,6 +311,18 @@ def test_a_cause_has_one_condition() -> None:
     )
 
 
+def test_what_rounds_a_number_has_no_limit_of_sizes() -> None:
+    """A damping of 0.6 is left as it is by two decimals: no limit below 0.6 decides."""
+    limit = "the damping is below a limit between 0.48 and 0.6 N m s/rad"
+    rounded = "the damping is rounded to 2 decimals"
+    assert conditioned(rounded, limit) == rounded
+    assert (
+        conditioned(rounded, "the body is pivoted")
+        == f"{rounded}, but only where the body is pivoted"
+    )
+    assert conditioned("the damping is missing", limit).endswith(limit)
+
+
 def test_an_engine_that_has_hung_is_asked_no_more() -> None:
     """Caught: minutes of silence, of nine time limits for each of six causes."""
 

@@ -15,13 +15,14 @@ OF_SOME = re.compile(
 )
 ALONE = re.compile(rf"; it is so in scenarios alone where .*?{END}")
 WHERE = re.compile(rf", but only where (.*?){END}")
-# What acts on some numbers alone by what it is.
+# What acts on some numbers alone by what it is: where it leaves them as they are, no size decides.
+LIMIT = "a limit between"
 BY_ITSELF = re.compile(r"is limited to|held above|is rounded to|is taken for zero")
 
 
 def conditioned(text: str, condition: str) -> str:
-    """The cause, on this condition; as it is where there is none."""
-    if not condition:
+    """The cause, on this condition; as it is where there is none, or where the cause implies it."""
+    if not condition or (LIMIT in condition and BY_ITSELF.search(text)):
         return text
     if text.startswith(UNKNOWN):
         return f"{ALONE.sub('', text)}; it is so only where {condition}"
