@@ -157,6 +157,19 @@ def gyroscopic_without_x(system: System, states: State) -> Acceleration:
     return with_torque(system, states, gyroscopic(system, states) * np.array([1.0, 0.0, 0.0]))
 
 
+def weight_partly_balanced(system: System, states: State) -> Acceleration:
+    """A tenth of the torque of gravity about the body's z axis is compensated."""
+    part = np.array([0.0, 0.0, -0.1])
+    return with_torque(system, states, part * gravity_torque(system, states))
+
+
+def weight_partly_balanced_in_world(system: System, states: State) -> Acceleration:
+    """Half of its torque about the world's x axis is."""
+    q, torque = states.orientation, gravity_torque(system, states)
+    part = np.array([-0.5, 0.0, 0.0])
+    return with_torque(system, states, rotate_inverse(q, part * rotate(q, torque)))
+
+
 def gyroscopic_of_world_omega(system: System, states: State) -> Acceleration:
     turned = rotate(states.orientation, states.angular_velocity)
     wrong = cross(turned, apply(moving_inertia(system), turned))
@@ -284,6 +297,14 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
         "the gyroscopic term is missing, but only where |omega| is above",
     ),
     "row": (gyroscopic_without_x, "of the gyroscopic term the x component is missing"),
+    "weight-row": (
+        weight_partly_balanced,
+        "of the torque of gravity the z component is scaled by 0.9",
+    ),
+    "weight-world-row": (
+        weight_partly_balanced_in_world,
+        "of the torque of gravity in world axes the x component is scaled by 0.5",
+    ),
     "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
     "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),
     "turning": (

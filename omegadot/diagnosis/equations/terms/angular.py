@@ -54,6 +54,12 @@ ANGULAR: tuple[Terms, ...] = (
         lambda s, x, a: solved(s, gravity_torque(s, x))[None],
         scaled_report("the torque of gravity"),
     ),
+    Terms(
+        "gravity torque rows",
+        lambda s, x, a: np.stack([solved(s, one) for one in rows(gravity_torque(s, x))]),
+        by_rows("the torque of gravity"),
+        by_rows=True,
+    ),
     Terms("constant in body", unit_rates, constant("body")),
     Terms("constant in world", lambda s, x, a: world(s, x, np.eye(3)), constant("world")),
     Terms("omega x body", lambda s, x, a: omega_cross(x, body_constant(x)), turning("body")),

@@ -52,11 +52,14 @@ def _signed(row: Array) -> str:
     return f"{'-' if row[axis] < 0.0 else ''}{AXES[axis]}"
 
 
-def _world_damping(system: System, states: State) -> Array:
-    """The damping's components in world axes, each alone, as omega-dot (3, n, 3)."""
-    q, torque = states.orientation, -float(system.load.damping) * states.angular_velocity
-    parts = rows(rotate(q, torque))
-    return np.stack([solved(system, rotate_inverse(q, one)) for one in parts])
+def _damping(system: System, states: State) -> Array:
+    return -float(system.load.damping) * np.asarray(states.angular_velocity)
+
+
+def _world_rows(system: System, states: State, torque: Array) -> Array:
+    """A torque's components in world axes, each alone, as omega-dot (3, n, 3)."""
+    q = states.orientation
+    return np.stack([solved(system, rotate_inverse(q, one)) for one in rows(rotate(q, torque))])
 
 
 def _powers(system: System, states: State) -> Array:
@@ -117,8 +120,14 @@ MIXED: tuple[Terms, ...] = (
     ),
     Terms(
         "damping rows in world",
-        lambda s, x, a: _world_damping(s, x),
+        lambda s, x, a: _world_rows(s, x, _damping(s, x)),
         by_rows("the damping in world axes"),
+        by_rows=True,
+    ),
+    Terms(
+        "gravity torque rows in world",
+        lambda s, x, a: _world_rows(s, x, gravity_torque(s, x)),
+        by_rows("the torque of gravity in world axes"),
         by_rows=True,
     ),
     Terms("powers of omega", lambda s, x, a: _powers(s, x), _powers_text),
