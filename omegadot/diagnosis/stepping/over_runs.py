@@ -29,6 +29,7 @@ from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
 from omegadot.diagnosis.stepping.slips.old_where import old_operands_where
 from omegadot.diagnosis.stepping.slips.scheme_by_length import scheme_by_length
+from omegadot.diagnosis.stepping.slips.scheme_by_state import scheme_by_state
 from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.slips.switched import switched
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
@@ -97,6 +98,7 @@ def _searches(
         return
     yield lambda: scheme_by_length(by, runs)
     yield lambda: switched(by, runs)
+    yield lambda: scheme_by_state(integrator, by, runs)
     yield lambda: between_steps(by, runs)
     yield lambda: first_step_causes(by, runs)
     yield lambda: substeps_of_runs(integrator, by, chosen)

@@ -87,7 +87,7 @@ def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:
 
 def _sorted(by: SchemeOf, runs: Sequence[KeptRun]) -> _Sorted:
     sound = [run.sound(by) for run in runs]
-    each = [[_features(run, states) for states in _places(run)] for run in runs]
+    each = [[step_features(run, states) for states in _places(run)] for run in runs]
     names = {name: unit for name, (_, unit) in each[0][0].items()}
 
     def over(pick: np.ufunc, name: str) -> Array:
@@ -102,8 +102,8 @@ def _sorted(by: SchemeOf, runs: Sequence[KeptRun]) -> _Sorted:
     )
 
 
-def _features(run: KeptRun, states: State) -> Numbers:
-    """Those of the states, and of what a step changes there."""
+def step_features(run: KeptRun, states: State) -> Numbers:
+    """Numbers of states (n,) of a run, with units, and of what a step changes there."""
     h, w = run.sweep.timestep, norm(states.angular_velocity)
     rate = norm(forward_dynamics(run.system, states).angular)
     return features_of_states(run.system, states) | {
