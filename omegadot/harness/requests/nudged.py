@@ -11,7 +11,7 @@ from omegadot.gates.states.own_rounding import (
     nudged,
     rounding_shown,
 )
-from omegadot.harness.drive import CaseResult, Driver
+from omegadot.harness.drive import Driver
 from omegadot.harness.outcome import EngineCase
 
 
@@ -22,19 +22,15 @@ def rounding_may_decide(case: Case, found: EngineCase) -> bool:
     return not requested and may_be_rounding(case.system, rows)
 
 
-def request_nudged(
-    driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
-) -> None:
-    """The bound of omega-dot by the engine's own rounding, into `result`."""
+def request_nudged(driver: Driver, case: Case, found: EngineCase, states: EvaluationStates) -> None:
+    """The bound of omega-dot by the engine's own rounding, into the result."""
+    result = found.result
     eps, shown = eps_of(result.precision), 0.0
     strict = omega_dot_bound(case.system, eps)
-    for states, answer in (
-        (evaluation_states.random, result.forward),
-        (evaluation_states.path, result.path),
-    ):
-        beside = nudged(states, eps)
+    for own, answer in ((states.random, result.forward), (states.path, result.path)):
+        beside = nudged(own, eps)
         again = driver.request(case, "forward", states=beside)
         if answer.ok and again.ok:
-            pairs = [(states, answer.result["angular"]), (beside, again.result["angular"])]
+            pairs = [(own, answer.result["angular"]), (beside, again.result["angular"])]
             shown = max(shown, rounding_shown(case.system, pairs, strict))
     result.own_rounding = bound_of(case.system, shown, strict)
