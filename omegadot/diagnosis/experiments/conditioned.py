@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.no_lever import no_lever
 
 UNKNOWN = "none is known"
@@ -27,11 +28,9 @@ def conditioned(text: str, condition: str) -> str:
         return f"{ALONE.sub('', text)}; it is so only where {condition}"
     plain = no_lever(OF_SOME.sub("", text), condition)
     either = "either " in plain or "; " in plain
-    return (
-        f"{plain}; it is so only where {condition}"
-        if either
-        else f"{plain}, but only where {condition}"
-    )
+    if either:
+        return f"{plain}; it is so only where {condition}"
+    return plain + only_where(plain, condition)
 
 
 def condition_in(text: str) -> str:
