@@ -220,7 +220,7 @@ def in_a_batch(scenario: str, system: System, initial: State) -> Iterator[Measur
 
 
 def measured(options: argparse.Namespace) -> Iterator[Measured]:
-    """All that was asked for."""
+    """All that was requested."""
     for scenario in options.scenario or SCENARIOS:
         given = load_builtin(scenario)
         system, initial = system_of(given), initial_state_of(given)

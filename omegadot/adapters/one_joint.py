@@ -15,7 +15,8 @@ from omegadot.reference_impl.system import Acceleration, Array, Body, State, Sys
 class OneJointAdapter:
     """The part of an adapter that its joint answers.
 
-    A joint has body, set_state and get_state, and inverse: the torque (3,) at a state.
+    A joint has body, set_state and get_state, forward: omega-dot and the centre of mass's
+    acceleration (3,) at a state, and inverse: the torque (3,) there.
     """
 
     name: str
@@ -62,6 +63,12 @@ class OneJointAdapter:
         native = import_module(f"omegadot.adapters.{self.name}.native")
         conventions, defaults = native.conventions(self._engine), native.defaults(self._engine)
         return {"conventions": conventions, "defaults": defaults}
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """The engine's own forward dynamics at n states."""
+        joint, count = self._loaded(), len(states.angular_velocity)
+        answers = np.array([joint.forward(states[n]) for n in range(count)])
+        return Acceleration(answers[:, 0], answers[:, 1])
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """The engine's own inverse dynamics at n states."""

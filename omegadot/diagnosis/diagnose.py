@@ -19,9 +19,9 @@ import numpy as np
 from omegadot.diagnosis.case_causes import CaseCauses
 from omegadot.diagnosis.defect import kept_apart
 from omegadot.diagnosis.equations.evidence import FORWARD
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.in_batches import InBatches
 from omegadot.diagnosis.experiments.judges import changes_by_itself
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
@@ -63,7 +63,7 @@ class Causes:
         self._texts: dict[tuple[str, str, str | None], str] = {}
         self._followed: dict[tuple[str, str, str], str] = {}
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
-        self._asked: dict[str, Asked] = {}
+        self._requests: dict[str, Requests] = {}
         self._unsteady: dict[str, bool] = {}
         self._batches: dict[str, InBatches] = {}
         self._after: dict[tuple[str, str], list[AfterRun]] = {}
@@ -174,7 +174,9 @@ class Causes:
     @property
     def lost(self) -> dict[str, str]:
         """By engine, the experiment in which it crashed or gave no answer, and how."""
-        return {name: asked.lost_in for name, asked in self._asked.items() if asked.lost_in}
+        return {
+            name: requests.lost_in for name, requests in self._requests.items() if requests.lost_in
+        }
 
     def _changes(self, engine: str, own: CaseCauses) -> bool:
         """Whether an engine's omega-dot changes by itself: then no cause of it is one."""
@@ -182,8 +184,8 @@ class Causes:
             evidence = self._engines[engine].across.scenes[own.case.name].evidence[FORWARD]
 
             def call(driver: Driver) -> Conditions:
-                asked = self._asked.setdefault(engine, Asked(driver))
-                changes = changes_by_itself(asked, own.case, evidence.states, own.eps)
+                requests = self._requests.setdefault(engine, Requests(driver))
+                changes = changes_by_itself(requests, own.case, evidence.states, own.eps)
                 return Conditions(CHANGES if changes else "")
 
             self._unsteady[engine] = bool(self.ask(engine, call).condition)
@@ -197,9 +199,9 @@ class Causes:
         batches, about = self._batches[engine], (own.case.name, text, own.of_torques)
 
         def call(driver: Driver) -> Conditions:
-            asked = self._asked.setdefault(engine, Asked(driver))
+            requests = self._requests.setdefault(engine, Requests(driver))
             with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-                batches.ask(asked, *about)
+                batches.ask(requests, *about)
             return Conditions("")
 
         if batches.wants(text, own.of_torques) and self.ask is not None:
@@ -216,12 +218,12 @@ class Causes:
         here = list[AfterRun]()
 
         def call(driver: Driver) -> Conditions:
-            asked = self._asked.setdefault(engine, Asked(driver))
+            requests = self._requests.setdefault(engine, Requests(driver))
             names = sorted(own.integrators, key=lambda one: one.name != integrator)
             states = own.states.random[: PAIRS + 1]
             pairs = 1 if first else PAIRS
             with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-                here.extend(after_runs(asked, own.case, names, states, own.eps, pairs))
+                here.extend(after_runs(requests, own.case, names, states, own.eps, pairs))
                 return Conditions(taken_of_run_before([*first, *here]))
 
         assert self.ask is not None
@@ -238,9 +240,9 @@ class Causes:
         every = (one.steps_of(name) for one in self._cases[engine].values())
         steps = [one for one in every if one is not None]
         scenes = self._engines[engine].across.scenes
-        asked = self._asked.setdefault(engine, Asked(driver))
+        requests = self._requests.setdefault(engine, Requests(driver))
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            return conditions_of(subject, asked, own.case, scenes, steps, own.eps)
+            return conditions_of(subject, requests, own.case, scenes, steps, own.eps)
 
 
 def diagnose(

@@ -10,7 +10,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.run_rules import KeptRuns
-from omegadot.diagnosis.stepping.ends.run_ends import run_end
+from omegadot.diagnosis.stepping.ends.last_samples import run_end
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.step_orders import order_lost
 from omegadot.diagnosis.stepping.vanishing.follows import (

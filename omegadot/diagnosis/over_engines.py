@@ -1,4 +1,4 @@
-"""The causes of what fails in a run, looked for when the first is asked for."""
+"""The causes of what fails in a run, looked for when the first is requested."""
 
 from __future__ import annotations
 

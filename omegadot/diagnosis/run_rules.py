@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.last_samples import RunEnd
 from omegadot.diagnosis.stepping.ends.moved_samples import Moved, moved_samples
 from omegadot.diagnosis.stepping.ends.read_out import ReadOut, samples_read
-from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
+from omegadot.diagnosis.stepping.ends.run_ends import Ends, other_ends
 from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths

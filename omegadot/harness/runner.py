@@ -44,7 +44,7 @@ from omegadot.harness.requests.truth_requests import (
     case_truth,
     reference_runs,
 )
-from omegadot.harness.requests.turned import request_turned
+from omegadot.harness.requests.turned import axes_may_decide, request_turned
 from omegadot.harness.requests.until_raised import request_until_raised
 
 
@@ -209,36 +209,32 @@ class Runner:
             if not any(done):
                 break
             judged = self.judge(pending, finer)
-        return self._rounded(pending, self._in_other_worlds(pending, judged, finer), finer)
+        return self._with_more_requests(pending, judged, finer)
 
-    def _rounded(
+    def _with_more_requests(
         self, pending: PendingCase, judged: JudgedCase, finer: dict[str, Refinements]
     ) -> JudgedCase:
-        """Judge a case again where an engine's own rounding can decide; see `own_rounding`."""
-        futures = []
-        for found in judged.engines:
-            if judged.truth is not None and rounding_may_decide(judged.case, found):
-                states = evaluation_states_of(judged.case, judged.truth, self.request.seed)
-                driver = self.engines.drivers[found.engine.name]
-                call = partial(request_nudged, driver, judged.case, states, found.result)
-                futures.append(self.engines.submit(found.engine.name, call))
-        for future in futures:
-            outcome_of(future)
-        return self.judge(pending, finer) if futures else judged
+        """Judge a case again where the axes of the world, then an engine's own rounding can decide.
 
-    def _in_other_worlds(
-        self, pending: PendingCase, judged: JudgedCase, finer: dict[str, Refinements]
-    ) -> JudgedCase:
-        """Judge a case again where the axes of the world can decide; see `errors.coordinates`."""
-        futures = []
-        for found in judged.engines:
-            name, runs = found.engine.name, [run for run in found.runs if run.by_axes]
-            if runs:
-                how = (self.engines.drivers[name], judged.case, found.result, runs)
-                futures.append(self.engines.submit(name, partial(request_turned, *how)))
-        for future in futures:
-            outcome_of(future)
-        return self.judge(pending, finer) if futures else judged
+        See `errors.coordinates` and `own_rounding`.
+        """
+        case, truth = judged.case, judged.truth
+        if truth is None:
+            return judged
+        states = evaluation_states_of(case, truth, self.request.seed)
+        nudged = partial(request_nudged, states=states)
+        decided = ((axes_may_decide, request_turned), (rounding_may_decide, nudged))
+        for may_decide, request in decided:
+            futures = []
+            for found in judged.engines:
+                name = found.engine.name
+                if may_decide(case, found):
+                    call = partial(request, self.engines.drivers[name], case, found)
+                    futures.append(self.engines.submit(name, call))
+            for future in futures:
+                outcome_of(future)
+            judged = self.judge(pending, finer) if futures else judged
+        return judged
 
     def run_case(self, case: Case) -> JudgedCase:
         """One case by itself; the workers are started before and finished after by the caller.

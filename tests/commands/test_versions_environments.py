@@ -89,7 +89,7 @@ def test_what_the_missing_ones_take_is_known_after_the_first(tmp_path: Path) -> 
     (folder / "large").write_bytes(bytes(1000))
     assert Environments(tmp_path, MUJOCO, fake)._size("3.2.0") > 1000
     assert environments.space_for(wanted, 2).more == 1
-    assert environments.space_for(["3.2.0", "3.4.0"], 2).more == 0  # one was asked for by name
+    assert environments.space_for(["3.2.0", "3.4.0"], 2).more == 0  # one was requested by name
     assert Environments(tmp_path, MUJOCO, None).space_for(wanted, 5).more == 0
 
 

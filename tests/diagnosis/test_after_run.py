@@ -13,7 +13,7 @@ from wrong_equations import CASES
 
 from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference import ReferenceAdapter
-from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.stepping.ends.after_run import OWN, AfterRun, _of_start, taken_of_run_before
 from omegadot.gates.bounds.scales import EPS
@@ -130,11 +130,11 @@ def old_start(
 
 
 def cause(engine: ReferenceAdapter, case: object, name: str = EULER) -> str:
-    asked = Asked(driver_of("wrong", engine))
+    requests = Requests(driver_of("wrong", engine))
     integrators = [i for i in engine.description.integrators if i.name == name]
     assert case in CASES
     one = next(c for c in CASES if c is case)
-    seen = after_runs(asked, one, integrators, random_states(one, 4, [1]), EPS, 3)
+    seen = after_runs(requests, one, integrators, random_states(one, 4, [1]), EPS, 3)
     return taken_of_run_before([*seen])
 
 

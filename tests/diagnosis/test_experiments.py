@@ -15,7 +15,6 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.equations.hypotheses import hypotheses
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
@@ -26,6 +25,7 @@ from omegadot.diagnosis.experiments.experiment import Experiment
 from omegadot.diagnosis.experiments.judges import MOST, ForwardJudge, shown_in
 from omegadot.diagnosis.experiments.lines import between
 from omegadot.diagnosis.experiments.observed import Observations, Trial
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.experiments.sorting import contradicted
 from omegadot.diagnosis.experiments.step_lengths import limit_of_length
 from omegadot.diagnosis.experiments.traits import START, traits_of
@@ -55,7 +55,7 @@ class Toy:
     """A driver whose engine loses its gyroscopic term where a condition holds."""
 
     def __init__(self, where: Where) -> None:
-        self.where, self.asked = where, 0
+        self.where, self.requests = where, 0
 
     def found(self, system: System, states: State) -> Acceleration:
         lost = np.reshape(
@@ -65,7 +65,7 @@ class Toy:
 
     def request(self, one: Case, operation: str, states: State) -> Answer:
         assert operation == "forward"
-        self.asked += 1
+        self.requests += 1
         return Answer("ok", result=vars(self.found(one.system, states)))
 
 
@@ -84,17 +84,17 @@ def experiment(where: Where, cases: tuple[Case, ...], named: bool = True) -> tup
         states = random_states(each, 40, [3])
         evidence = of_forward_dynamics(each.system, states, toy.found(each.system, states))
         drawn.append(Trial(each.system, states, *shown_in(evidence, one)))
-    judge = ForwardJudge(Asked(cast(Driver, toy)), cases[0], EPS, one)
+    judge = ForwardJudge(Requests(cast(Driver, toy)), cases[0], EPS, one)
     return Experiment(judge, drawn).condition(), toy
 
 
 def torque_acts(system: System, states: State) -> Any:
     load = system.load
     lever = 0.0 if load.pivot is None else system.body.center_of_mass - load.pivot
-    hung = load.pivot is not None and np.any(load.gravity) and np.any(lever)
+    weighs = load.pivot is not None and np.any(load.gravity) and np.any(lever)
     applied = np.any(load.torque_body) or np.any(load.torque_world)
     damped = np.any(load.damping) and np.any(states.angular_velocity, axis=-1)
-    return damped | bool(applied) | bool(hung)
+    return damped | bool(applied) | bool(weighs)
 
 
 def pitch(_: System, states: State) -> Any:
@@ -145,7 +145,7 @@ def test_a_condition_is_named(name: str) -> None:
     cases = (FREE, TOP) if name not in ("equal", "two at once") else (FREE, TOP, DRIVEN, ROUND)
     found, toy = experiment(where, cases)
     assert found in (text, text.replace(" about what stays", ""))
-    assert toy.asked <= MOST
+    assert toy.requests <= MOST
 
 
 @pytest.mark.parametrize("name", LIMITS)
@@ -156,7 +156,7 @@ def test_a_limit_is_closed_in_upon(name: str) -> None:
     low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
     assert low < limit < high
     assert high - low < 0.1 * limit
-    assert toy.asked <= MOST
+    assert toy.requests <= MOST
 
 
 def nearly_symmetric(system: System, _: State) -> Any:
@@ -171,7 +171,7 @@ def test_moments_that_nearly_agree_are_a_condition() -> None:
     assert found.startswith("|Ixx - Iyy| / Izz is below a limit between")
     low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
     assert low < 0.1 < high
-    assert toy.asked <= MOST
+    assert toy.requests <= MOST
 
 
 def chance(system: System, _: State) -> bool:
@@ -204,15 +204,15 @@ def test_an_observation_contradicts_a_condition() -> None:
     assert not contradicted(Observations([free, held]), "of which nothing is known")
 
 
-def test_an_engine_that_does_not_answer_is_asked_no_more() -> None:
+def test_no_request_is_made_of_an_engine_that_does_not_answer() -> None:
     toy = Toy(lambda s, _: s.load.pivot is not None)
     late = SimpleNamespace(request=lambda *_, **__: Answer("timeout", "late"))
     states = random_states(TOP, 10, [3])
     evidence = of_forward_dynamics(TOP.system, states, toy.found(TOP.system, states))
-    judge = ForwardJudge(Asked(cast(Driver, late)), TOP, EPS, missing())
+    judge = ForwardJudge(Requests(cast(Driver, late)), TOP, EPS, missing())
     one = Trial(TOP.system, states, *shown_in(evidence, missing()))
     assert Experiment(judge, [one]).condition() == ""
-    assert judge.asked == 1
+    assert judge.requests == 1
 
 
 @pytest.mark.parametrize("one", [FREE, TOP, DRIVEN])
@@ -276,7 +276,7 @@ def test_a_turn_in_a_step_is_told_from_its_length(
     start = random_states(FREE, 2, [1])
     start.angular_velocity[:] = [[0.2, -0.5, 0.7], [2.0, 4.0, -3.0]]
     integrator = Integrator("one", None, {})
-    found = limit_of_length(Asked(cast(Driver, Steps(where))), FREE, integrator, start, EPS)
+    found = limit_of_length(Requests(cast(Driver, Steps(where))), FREE, integrator, start, EPS)
     assert found.startswith(text)
     low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
     assert low < limit * (1.0 + 1e-9)
@@ -287,7 +287,7 @@ def test_steps_that_are_of_one_formula_have_no_limit() -> None:
     start = random_states(FREE, 2, [1])
     start.angular_velocity[:] = [[0.2, -0.5, 0.7], [2.0, 4.0, -3.0]]
     for always in (True, False):
-        driver = Asked(cast(Driver, Steps(lambda *_, always=always: always)))
+        driver = Requests(cast(Driver, Steps(lambda *_, always=always: always)))
         assert limit_of_length(driver, FREE, Integrator("one", None, {}), start, EPS) == ""
 
 
@@ -323,7 +323,7 @@ def test_what_rounds_a_number_has_no_limit_of_sizes() -> None:
     assert conditioned("the damping is missing", limit).endswith(limit)
 
 
-def test_an_engine_that_has_hung_is_asked_no_more() -> None:
+def test_no_request_is_made_after_a_time_limit() -> None:
     """Caught: minutes of silence, of nine time limits for each of six causes."""
 
     class Hanging:
@@ -334,11 +334,11 @@ def test_an_engine_that_has_hung_is_asked_no_more() -> None:
             return Answer("ok" if self.requests < 3 else "timeout", result={})
 
     toy = Hanging()
-    asked = Asked(cast(Driver, toy))
-    outcomes = [asked.request(TOP, "forward").outcome for _ in range(5)]
+    requests = Requests(cast(Driver, toy))
+    outcomes = [requests.request(TOP, "forward").outcome for _ in range(5)]
     assert outcomes == ["ok", "ok", "timeout", "timeout", "timeout"]
     assert toy.requests == 3
-    judge = ForwardJudge(asked, TOP, EPS, missing())
+    judge = ForwardJudge(requests, TOP, EPS, missing())
     assert judge.trial(TOP.system, random_states(TOP, 2, [1])) is None
     assert toy.requests == 3
 

@@ -19,8 +19,8 @@ from omegadot.diagnosis.equations.evidence import (
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.wrong_equation import equation_causes
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.in_batches import InBatches
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.reported.requests import ONE_ALONE
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case
@@ -45,7 +45,7 @@ class Toy:
     """A driver whose engine loses its gyroscopic term at these places of a batch."""
 
     def __init__(self, where: Where) -> None:
-        self.where, self.asked = where, 0
+        self.where, self.requests = where, 0
 
     def _lost(self, count: int) -> Array:
         lost = np.broadcast_to(self.where(np.arange(count), count), count)
@@ -62,7 +62,7 @@ class Toy:
         )
 
     def request(self, one: Case, operation: str, states: State, **more: Any) -> Answer:
-        self.asked += 1
+        self.requests += 1
         if operation == "forward":
             return Answer("ok", result=vars(self.forward(one.system, states)))
         return Answer("ok", result={"torque": self.inverse(one.system, states, **_of(more))})
@@ -94,7 +94,7 @@ def named(where: Where, torque: bool = False, text: str = "") -> tuple[str, bool
     batches = InBatches({one.name: one for one in EVERY}, across.scenes)
     with np.errstate(all="ignore"):
         if batches.wants(text, torque):
-            batches.ask(Asked(cast(Driver, toy)), "free", text, torque)
+            batches.ask(Requests(cast(Driver, toy)), "free", text, torque)
         return *batches.of("free", text, torque), toy
 
 
@@ -142,13 +142,13 @@ def test_inverse_dynamics_have_batches_as_well(name: str) -> None:
 def test_what_every_batch_has_takes_few_requests() -> None:
     text, decides, toy = named(lambda k, n: True)
     assert (text, decides) == (MISSING, False)
-    assert toy.asked <= 6
+    assert toy.requests <= 6
 
 
 def test_a_cause_of_other_states_in_the_batch_is_not_tried() -> None:
     text = "states have the omega-dot of other states that are requested together with them"
     found, decides, toy = named(lambda k, n: True, text=text)
-    assert (found, decides, toy.asked) == (text, False, 0)
+    assert (found, decides, toy.requests) == (text, False, 0)
 
 
 def test_batches_in_no_known_way_are_not_named() -> None:

@@ -1,6 +1,6 @@
 """A formula with a product or a factor mistyped: a rotation's, or a cross product's.
 
-What these tests catch: a slip that is told by what it does to one scenario alone, one that is
+What these tests catch: a slip that is recognised by what it does to one scenario alone, one that is
 worded as another formula, and a cause for what is no slip of the hand.
 """
 

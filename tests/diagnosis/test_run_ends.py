@@ -9,7 +9,8 @@ import pytest
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.ends.run_ends import RunEnd, other_ends
+from omegadot.diagnosis.stepping.ends.last_samples import RunEnd
+from omegadot.diagnosis.stepping.ends.run_ends import other_ends
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.kinematics import place_on_pivot

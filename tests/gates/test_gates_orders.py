@@ -325,7 +325,7 @@ def test_every_step_needs_its_error() -> None:
 def test_steps_longer_than_an_engines_own_change_nothing() -> None:
     """Caught: an engine of order 2 that splits long steps, accused of order 0 at these.
 
-    Where no step changes anything, that is said, and finer ones are asked for.
+    Where no step changes anything, that is reported, and finer ones are requested.
     """
     own = {h: min(h, 0.125) for h in (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125)}
     growing = 1e-2 * SAMPLES

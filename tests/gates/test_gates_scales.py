@@ -13,6 +13,7 @@ from omegadot.gates.bounds.scales import (
     body_scale,
     linear_size,
     norm,
+    omega_dot_bound,
     torque_size,
 )
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
@@ -55,6 +56,11 @@ def test_a_pivoted_body_is_measured_about_both_points() -> None:
     arm = np.array([0.0, -3.0, 2.0])
     about = np.diag([2.0, 3.0, 4.0]) + 2.0 * (13.0 * np.eye(3) - np.outer(arm, arm))
     assert scale.smallest == pytest.approx(np.linalg.eigvalsh(about)[0], rel=8 * EPS)
+
+
+@pytest.mark.parametrize("eps", [EPS, 2.0**-23])
+def test_an_ill_conditioned_inertia_widens_the_bound_of_omega_dot(eps: float) -> None:
+    assert omega_dot_bound(FREE, eps) == pytest.approx(64 * eps * 12.0 / 2.0, rel=8 * EPS)
 
 
 def test_the_terms_of_the_equation_add_up_by_size() -> None:

@@ -86,9 +86,10 @@ def judged(equation: Equation) -> tuple[list[Row], list[Row]]:
         return [row for row in found if row.channel == "omega_dot"]
 
     before = rows()
-    assert rounding_may_decide(NEEDLE, EngineCase(driver.engine, result, before, []))
-    request_nudged(driver, NEEDLE, states, result)
-    assert not rounding_may_decide(NEEDLE, EngineCase(driver.engine, result, before, []))
+    found = EngineCase(driver.engine, result, before, [])
+    assert rounding_may_decide(NEEDLE, found)
+    request_nudged(driver, NEEDLE, found, states)
+    assert not rounding_may_decide(NEEDLE, found)
     return before, rows()
 
 

@@ -1,4 +1,4 @@
-"""When finer steps are asked for, and what of a run that overflows is judged.
+"""When finer steps are requested, and what of a run that overflows is judged.
 
 What these tests catch: runs at ever finer steps whose errors drown in rounding all the more; a
 sweep that is judged although its next step would show a fault.

@@ -15,7 +15,8 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.judging.runs import judge_case
-from omegadot.harness.requests.turned import TURNS, request_turned, turned
+from omegadot.harness.outcome import EngineCase
+from omegadot.harness.requests.turned import TURNS, axes_may_decide, request_turned, turned
 from omegadot.reference_impl.rotations import conjugate, rotate, turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
@@ -74,7 +75,9 @@ def judged(adapter: Wrong, turns: bool) -> list[JudgedRun]:
         result.runs["own", sweep.timestep] = driver.run(case, "own", sweep)
     runs = judge_case(truth, case, result, {})
     if turns:
-        request_turned(driver, case, result, [run for run in runs if run.by_axes])
+        found = EngineCase(driver.engine, result, [], runs)
+        assert axes_may_decide(case, found)
+        request_turned(driver, case, found)
         runs = judge_case(truth, case, result, {})
     return runs
 

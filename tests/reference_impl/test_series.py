@@ -57,7 +57,7 @@ def test_forty_digits_agree(name: str) -> None:
     times = np.array([0.3 * end, end])
     found = solve_extended(on, initial, times)
     for n, (R, w) in enumerate(exact_states(on, initial, times)):
-        # 1e-12 is asked for; either type leaves four digits more
+        # 1e-12 is requested; either type leaves four digits more
         assert largest(found.angular_velocity[n] - w) <= 1e-16 * largest(w)
         assert largest(rotation_matrix(found.orientation[n]) - R) <= 1e-16
         kept = solve_series(on, initial, times)

@@ -107,8 +107,10 @@ def test_schemes_that_no_scenario_distinguishes_are_all_named():
     (found,) = clusters_over_scenarios(of(*both))
     expected = "(both step euler; no scenario here tells it from short-turns)"
     assert expected in sentence(found)
-    told = cluster("three", "x:a y:b")
-    (found,) = clusters_over_scenarios(of(told, told | {"scenario": "four"}, *both))
+    distinguished = cluster("three", "x:a y:b")
+    (found,) = clusters_over_scenarios(
+        of(distinguished, distinguished | {"scenario": "four"}, *both)
+    )
     assert found.schemes == ("euler",)
 
 

@@ -67,5 +67,5 @@ def test_the_glossary_of_the_page_has_no_marks_of_a_text_file():
     formulas = re.findall(r'<span class="part">([^<]*)', own)
     labels = {formula.split(":")[0] for formula in formulas}
     assert labels <= {"Formula", "Unit", "Units", "Value", "Values"}
-    # What the machine is asked for is not named by the key of a file.
+    # What is requested of the machine is not named by the key of a file.
     assert "longdouble_bits" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)

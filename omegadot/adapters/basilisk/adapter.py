@@ -90,12 +90,6 @@ class BasiliskAdapter(OneJointAdapter):
         self._system = system
         return BasiliskHub(BasiliskModel(self._engine, system))
 
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """The derivatives by `equationsOfMotion`, at n states."""
-        hub, count = self._loaded(), len(states.angular_velocity)
-        answers = np.array([hub.forward(states[n]) for n in range(count)])
-        return Acceleration(answers[:, 0], answers[:, 1])
-
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """Basilisk has none. Raises UnsupportedError."""
         raise UnsupportedError("basilisk has no inverse dynamics")

@@ -25,7 +25,7 @@ from omegadot.adapters.protocol import (
 )
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import Acceleration, State, System
+from omegadot.reference_impl.system import State, System
 
 SEMI_IMPLICIT = Integrator(
     "semi-implicit",
@@ -82,12 +82,6 @@ class DartAdapter(OneJointAdapter):
     def _built(self, system: System, via: Format | Literal[""]) -> DartJoint:
         model = DartModel(self._engine, system, via, physics=self._setup == "physics")
         return DartJoint(model, system)
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """`Skeleton.computeForwardDynamics` at n states."""
-        joint, count = self._loaded(), len(states.angular_velocity)
-        answers = np.array([joint.forward(states[n]) for n in range(count)])
-        return Acceleration(answers[:, 0], answers[:, 1])
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int

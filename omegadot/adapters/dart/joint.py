@@ -75,7 +75,10 @@ class DartJoint:
         return bool(are_finite(self._joint.getPositions(), self._joint.getVelocities()))
 
     def forward(self, state: State) -> tuple[Array, Array]:
-        """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world."""
+        """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world.
+
+        By `Skeleton.computeForwardDynamics`.
+        """
         self.set_state(state)
         if not self.is_finite():
             return np.full(3, np.nan), np.full(3, np.nan)

@@ -28,7 +28,7 @@ from omegadot.adapters.protocol import (
     UnsupportedError,
 )
 from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import Acceleration, State, System
+from omegadot.reference_impl.system import State, System
 
 CONVENTIONS = (
     "quaternions are (w, x, y, z), world-from-body, and are not made unit again after a step",
@@ -95,12 +95,6 @@ class DrakeAdapter(OneJointAdapter):
             self._models = {Stepping(): self._models[Stepping()]} if self._models else {}
             self._models[stepping] = DrakeModel(self._engine, self._system, self._via, stepping)
         return self._models[stepping]
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """The plant's generalised acceleration at n states."""
-        joint, count = self._loaded(), len(states.angular_velocity)
-        answers = np.array([joint.forward(states[n]) for n in range(count)])
-        return Acceleration(answers[:, 0], answers[:, 1])
 
     def run(
         self,

@@ -75,7 +75,8 @@ class DrakeJoint:
     def forward(self, state: State) -> tuple[Array, Array]:
         """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world.
 
-        ``d omega / dt`` is the same vector in both axes, as ``omega x omega`` is nothing.
+        From the plant's generalised acceleration. ``d omega / dt`` is the same vector in both axes,
+        as ``omega x omega`` is nothing.
         """
         self.set_state(state)
         found = self._plant.EvalBodySpatialAccelerationInWorld(self._own, self._node)

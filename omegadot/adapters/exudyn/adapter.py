@@ -30,7 +30,7 @@ from omegadot.adapters.protocol import (
 )
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import Acceleration, State, System
+from omegadot.reference_impl.system import State, System
 
 CONVENTIONS = (
     "a body is an ObjectRigidBody with its node at the body's origin, or at the pivot; its inertia "
@@ -97,12 +97,6 @@ class ExudynAdapter(OneJointAdapter):
         if kind not in self._models:
             self._models[kind] = ExudynModel(self._engine, self._system, kind, self._axes)
         return self._models[kind]
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """The accelerations with which the implicit solver begins, at n states."""
-        joint, count = self._loaded(), len(states.angular_velocity)
-        answers = np.array([joint.forward(states[n]) for n in range(count)])
-        return Acceleration(answers[:, 0], answers[:, 1])
 
     def run(
         self,

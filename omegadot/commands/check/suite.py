@@ -99,7 +99,7 @@ class Suite:
     def settled(self, results: Mapping[Check, Result]) -> dict[Check, Result]:
         """The results with causes that hold on all scenarios, on conditions found by experiment.
 
-        Every scenario has been run. Engines are asked only where a check fails.
+        Every scenario has been run. Requests are made of engines only where a check fails.
         """
         self._causes.ask = self._ask
         return {one: result.settled for one, result in results.items()}

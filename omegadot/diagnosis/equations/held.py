@@ -12,6 +12,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families import THREE_NUMBERS, Family
 from omegadot.diagnosis.equations.tried import Tried
 from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.harness.loaded_before import LoadedBefore
 from omegadot.reference_impl.system import Array, Body, State, System
@@ -116,13 +117,13 @@ class Held:
             elif evidence.visible(tried) and np.all(evidence.sound):
                 yield features, False
 
-    def where(self) -> str:
-        """Of numbers that act on some scenarios alone: on which."""
+    def where(self, text: str) -> str:
+        """Of numbers that act on some scenarios alone: on which. text: the cause so far."""
         if not self.against or self.pairs:
             return ""
         condition = self.condition()
         if condition:
-            return f", but only where {condition}"
+            return only_where(text, condition)
         if self.numbers:
             return ""  # what is seen elsewhere is not by these
         others = "other" if len(self.against) == 1 else "others"

@@ -9,6 +9,7 @@ from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.equation_form import same_form
 from omegadot.diagnosis.equations.held import Held, Scenes
 from omegadot.diagnosis.equations.same_cause import same_cause
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.no_lever import no_lever
 
 MOST_NAMED = 3  # causes between which a scenario does not decide
@@ -64,7 +65,7 @@ def _text_of(held: Held, source: str) -> str:
         pairs = [(held.shown[0].system, one.numbers), *((s.system, p) for s, p in held.numbers)]
         alike = one.family.alike(pairs)
         text += f"; {alike}" * bool(alike)
-    text += held.where()
+    text += held.where(text)
     if not held.numbers or one.numbers is None:
         return text
     return f"{text} ({held.shown[0].name}; other numbers on {len(held.numbers)} more)"
@@ -103,7 +104,8 @@ def on_some(held: Sequence[Held], own: bool = False) -> Named:
         if condition:
             evidence = next(iter(one.shown[0].evidence.values()))
             text = one.law or one.candidate.text(evidence.system, alone=len(one.shown) == 1)
-            text = f"{no_lever(text, condition)}, but only where {condition}"
+            text = no_lever(text, condition)
+            text += only_where(text, condition)
             if one.numbers and not one.law:
                 text = f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
             return Named(text, one.candidate, frozenset(one.names))

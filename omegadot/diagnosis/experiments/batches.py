@@ -20,9 +20,9 @@ from omegadot.diagnosis.equations.evidence import (
     of_forward_dynamics,
     of_inverse_dynamics,
 )
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.batch_patterns import patterns_of
 from omegadot.diagnosis.experiments.observed import Flags
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import Acceleration
 
@@ -36,7 +36,7 @@ DISTINCT = 12  # states that show the fault, of which batches are made
 class Batches:
     """Of a fault in the answers of one scenario. shows: the numbers of the states that show it."""
 
-    asked: Asked
+    requests: Requests
     case: Case
     evidence: Evidence
     shows: Places
@@ -57,7 +57,7 @@ class Batches:
     def _try(self, size: int) -> bool:
         """Whether so many states are answered; which of them wrongly is kept."""
         if size not in self.seen:
-            made = together(self.asked, self.case, self.evidence, self._places(size))
+            made = together(self.requests, self.case, self.evidence, self._places(size))
             if made is None or not made.finite:
                 return False
             shares = made.shares(made.true)
@@ -82,17 +82,17 @@ class Batches:
         return True
 
 
-def together(asked: Asked, case: Case, evidence: Evidence, places: Places) -> Evidence | None:
+def together(requests: Requests, case: Case, evidence: Evidence, places: Places) -> Evidence | None:
     """What the engine answers for these states of an evidence alone; None without an answer."""
     states, true = evidence.states[places], evidence.true
     system, eps = evidence.system, evidence.eps
     if evidence.source == INVERSE:
         requested = Acceleration(true.angular[places], true.linear[places])
-        answer = asked.request(case, "inverse", states=states, acceleration=requested)
+        answer = requests.request(case, "inverse", states=states, acceleration=requested)
         if not answer.ok or not np.all(np.isfinite(answer.result["torque"])):
             return None
         return of_inverse_dynamics(system, states, requested, answer.result["torque"], eps)
-    answer = asked.request(case, "forward", states=states)
+    answer = requests.request(case, "forward", states=states)
     return (
         of_forward_dynamics(system, states, Acceleration(**answer.result), eps)
         if answer.ok

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.no_lever import no_lever
 
 UNKNOWN = "none is known"
@@ -15,24 +16,23 @@ OF_SOME = re.compile(
 )
 ALONE = re.compile(rf"; it is so in scenarios alone where .*?{END}")
 WHERE = re.compile(rf", but only where (.*?){END}")
-# What acts on some numbers alone by what it is: where it leaves them as they are, no size decides.
-LIMIT = "a limit between"
+# Where a rounding leaves a number as it is, no size decides.
+LIMIT, ROUNDED = "a limit between", re.compile(r"is rounded to|is taken for zero")
+# What acts on some numbers alone by what it is.
 BY_ITSELF = re.compile(r"is limited to|held above|is rounded to|is taken for zero")
 
 
 def conditioned(text: str, condition: str) -> str:
     """The cause, on this condition; as it is where there is none, or where the cause implies it."""
-    if not condition or (LIMIT in condition and BY_ITSELF.search(text)):
+    if not condition or (LIMIT in condition and ROUNDED.search(text)):
         return text
     if text.startswith(UNKNOWN):
         return f"{ALONE.sub('', text)}; it is so only where {condition}"
     plain = no_lever(OF_SOME.sub("", text), condition)
     either = "either " in plain or "; " in plain
-    return (
-        f"{plain}; it is so only where {condition}"
-        if either
-        else f"{plain}, but only where {condition}"
-    )
+    if either:
+        return f"{plain}; it is so only where {condition}"
+    return plain + only_where(plain, condition)
 
 
 def condition_in(text: str) -> str:

@@ -53,7 +53,7 @@ class Experiment:
         return found or self._by_limits() or pair_that_sorts(self.seen)
 
     def _about_its_centre(self, one: Trial) -> Trial:
-        """The same held at the centre of mass, about which its inertia is then what is asked for.
+        """The same held at the centre of mass, about which its inertia is then the one requested.
 
         As it is where it is free, or where the fault goes with the lever.
         """

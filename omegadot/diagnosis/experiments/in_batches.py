@@ -17,10 +17,10 @@ from omegadot.diagnosis.equations.evidence import (
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.wrong_equation import equation_causes
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.batch_patterns import ALONE
 from omegadot.diagnosis.experiments.batches import Batches, together
 from omegadot.diagnosis.experiments.conditioned import conditioned
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.reported.requests import ONE_ALONE, is_of_place
 from omegadot.diagnosis.wording.kinds import is_named, kind_of
 from omegadot.gates.case import Case
@@ -49,7 +49,7 @@ class InBatches:
     _small: dict[tuple[int, bool], Across] = field(default_factory=dict, init=False)
 
     def wants(self, text: str, torque: bool) -> bool:
-        """Whether the engine has to be asked about a cause. torque: of inverse dynamics alone."""
+        """Whether requests have to be made about a cause. torque: of inverse dynamics alone."""
         if OF_BATCHES in kind_of(text) and not _of_some(text):
             return False
         if kind_of(text) not in self._found:
@@ -57,14 +57,14 @@ class InBatches:
         size = self._found[kind_of(text)].size
         return bool(size and (size, torque) not in self._small and not _names(text))
 
-    def ask(self, asked: Asked, name: str, text: str, torque: bool) -> None:
+    def ask(self, requests: Requests, name: str, text: str, torque: bool) -> None:
         """Have states of one scenario answered in other batches, and of all where it takes that."""
         kind = kind_of(text)
         if kind not in self._found:
-            self._found[kind] = self._of_one(asked, name, text, torque)
+            self._found[kind] = self._of_one(requests, name, text, torque)
         size = self._found[kind].size
         if size and not _names(text):
-            self._small[size, torque] = self._of_all(asked, size, INVERSE if torque else FORWARD)
+            self._small[size, torque] = self._of_all(requests, size, INVERSE if torque else FORWARD)
 
     def of(self, name: str, text: str, torque: bool) -> tuple[str, bool]:
         """The cause with the batches in which it acts, and whether these decide."""
@@ -84,7 +84,7 @@ class InBatches:
         what = "inverse dynamics are" if torque else "the equation is"
         return f"{what} wrong only where {found.condition}", True
 
-    def _of_one(self, asked: Asked, name: str, text: str, torque: bool) -> _Found:
+    def _of_one(self, requests: Requests, name: str, text: str, torque: bool) -> _Found:
         """By requests of states that show a fault."""
         for source in (INVERSE,) if torque else (FORWARD, ALONG):
             evidence = self.scenes[name].evidence.get(source)
@@ -94,13 +94,13 @@ class InBatches:
             if text == ONE_ALONE:  # it is of the first of them
                 shows = np.zeros(1, dtype=np.intp)
             if len(shows):
-                batches = Batches(asked, self.cases[name], evidence, shows)
+                batches = Batches(requests, self.cases[name], evidence, shows)
                 condition = batches.condition()
                 every = [n for n, flags in batches.seen.items() if np.all(flags)]
                 return _Found(condition, max(every, default=0) if condition else 0)
         return _Found()
 
-    def _of_all(self, asked: Asked, size: int, source: str) -> Across:
+    def _of_all(self, requests: Requests, size: int, source: str) -> Across:
         """The equations of all scenarios as they are answered in batches that show the fault."""
         across, count = Across(), -(-LEAST // size)
         for name, scene in self.scenes.items():
@@ -109,7 +109,7 @@ class InBatches:
                 continue
             places = np.arange(count * size, dtype=np.intp) % len(evidence.sound)
             every = np.split(places, count)
-            parts = [together(asked, self.cases[name], evidence, own) for own in every]
+            parts = [together(requests, self.cases[name], evidence, own) for own in every]
             known = [one for one in parts if one is not None]
             if len(known) == count:
                 own = {source: _joined(known)}

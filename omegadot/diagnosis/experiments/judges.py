@@ -16,8 +16,8 @@ from omegadot.diagnosis.equations.evidence import (
     Evidence,
     of_forward_dynamics,
 )
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.observed import Flags, Trial
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.models.misread_state import would_show
 from omegadot.diagnosis.stepping.vanishing.kinematics import shows_in_motion
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
@@ -78,20 +78,20 @@ class Judge:
     at_once: the states that one request takes at little cost.
     """
 
-    driver: Asked
+    driver: Requests
     case: Case
     eps: float
     candidate: Candidate | None = None
     at_once: int = 8
     left: int = MOST
-    asked: int = field(default=0, init=False)
+    requests: int = field(default=0, init=False)
 
     def trial(self, system: System, states: State, base: Trial | None = None) -> Trial | None:
         """What comes of it; None where there is no answer, or no request is left."""
         if self.left <= 0 or self.driver.lost is not None:
             return None
-        self.left, self.asked = self.left - 1, self.asked + 1
-        name = f"{self.case.name}-experiment-{self.asked}"
+        self.left, self.requests = self.left - 1, self.requests + 1
+        name = f"{self.case.name}-experiment-{self.requests}"
         scenario = self.case.scenario.model_copy(update={"name": name})
         placed = place_on_pivot(system, states)
         with np.errstate(all="ignore"):
@@ -115,7 +115,7 @@ class ForwardJudge(Judge):
         return shown_in(of_forward_dynamics(case.system, states, found, self.eps), self.candidate)
 
 
-def changes_by_itself(driver: Asked, case: Case, states: State, eps: float) -> bool:
+def changes_by_itself(driver: Requests, case: Case, states: State, eps: float) -> bool:
     """Whether omega-dot of the same states is another when it is requested again at once."""
     answers = [driver.request(case, "forward", states=states) for _ in range(2)]
     if not all(answer.ok for answer in answers):

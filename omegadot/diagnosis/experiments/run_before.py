@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.stepping.ends.after_run import OWN, AfterRun
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import RANGE, vanishing_steps
 from omegadot.gates.case import Case
@@ -41,7 +41,7 @@ class _Before:
 
 
 def after_runs(
-    driver: Asked,
+    driver: Requests,
     case: Case,
     integrators: Sequence[Integrator],
     states: State,
@@ -74,7 +74,7 @@ def after_runs(
 
 
 def _after(
-    driver: Asked, before: _Before, case: Case, own: Integrator, start: State, eps: float
+    driver: Requests, before: _Before, case: Case, own: Integrator, start: State, eps: float
 ) -> Iterator[AfterRun]:
     """Steps ever shorter from one state, each after the same run.
 
@@ -118,7 +118,7 @@ def _last_evaluated(before: _Before, path: State) -> State | None:
 
 
 def _ends(
-    driver: Asked,
+    driver: Requests,
     before: _Before,
     case: Case,
     own: Integrator,
@@ -155,7 +155,7 @@ def _limit(paths: Sequence[State]) -> State:
 
 
 def _replay(
-    driver: Asked, case: Case, integrator: Integrator, start: State, h: float, steps: int
+    driver: Requests, case: Case, integrator: Integrator, start: State, h: float, steps: int
 ) -> State | None:
     """The states (steps + 1,) of a run; None where it is not answered in full."""
     how = {"timestep": h, "steps": steps, "every": 1, "accuracy": None}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
@@ -37,7 +37,7 @@ class Jump:
 
 
 def limit_of_length(
-    driver: Asked, case: Case, integrator: Integrator, states: State, eps: float
+    driver: Requests, case: Case, integrator: Integrator, states: State, eps: float
 ) -> str:
     """``a step turns the body by less than a limit between A and B rad``; "" where none is seen.
 
@@ -66,7 +66,7 @@ def limit_of_length(
 
 
 def _jump(
-    driver: Asked, case: Case, integrator: Integrator, start: State, eps: float
+    driver: Requests, case: Case, integrator: Integrator, start: State, eps: float
 ) -> Jump | None:
     """Where the error of one step from a state jumps; None where it does not, or in two places."""
     rate = float(norm(start.angular_velocity))
@@ -88,7 +88,7 @@ def _jump(
 
 
 def _errors(
-    driver: Asked, case: Case, integrator: Integrator, start: State, lengths: Array, eps: float
+    driver: Requests, case: Case, integrator: Integrator, start: State, lengths: Array, eps: float
 ) -> Array | None:
     """(k,): how far a step of each length is from the exact motion, relative to what it changes."""
     try:

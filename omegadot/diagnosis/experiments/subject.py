@@ -11,7 +11,6 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.held import Scene
-from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
@@ -30,6 +29,7 @@ from omegadot.diagnosis.experiments.judges import (
     shows,
 )
 from omegadot.diagnosis.experiments.observed import Trial
+from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.experiments.sorting import contradicted
 from omegadot.diagnosis.experiments.step_lengths import limit_of_length
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
@@ -84,7 +84,7 @@ class Conditions:
 
 def conditions_of(
     subject: Subject,
-    driver: Asked,
+    driver: Requests,
     case: Case,
     scenes: Mapping[str, Scene],
     steps: Sequence[VanishingSteps],
@@ -102,7 +102,7 @@ def conditions_of(
 
 def _experiment_of(
     subject: Subject,
-    driver: Asked,
+    driver: Requests,
     case: Case,
     scenes: Mapping[str, Scene],
     steps: Sequence[VanishingSteps],
@@ -126,7 +126,7 @@ def _experiment_of(
 
 
 def _length_of(
-    subject: Subject, driver: Asked, case: Case, steps: Sequence[VanishingSteps], eps: float
+    subject: Subject, driver: Requests, case: Case, steps: Sequence[VanishingSteps], eps: float
 ) -> str:
     """A length of step, or a turn in one, from or up to which the steps are wrong."""
     if subject.integrator is None:

@@ -38,19 +38,20 @@ def _times(factors: Sequence[float], products: list[float]) -> list[float]:
     return [a * b for a, b in zip(factors, products, strict=True)]
 
 
+def in_single(values: Array) -> Array:
+    """Every number rounded to single precision."""
+    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
+
+
 def diagonal_in_single(tensor: Array) -> Array:
     """A tensor (3, 3) with the numbers on its diagonal alone rounded to single precision."""
-    return np.asarray(tensor - _diagonal(tensor) + _diagonal(_single(tensor)))
+    return np.asarray(tensor - _diagonal(tensor) + _diagonal(in_single(tensor)))
 
 
 def products_in_single(tensor: Array) -> Array:
     """A tensor (3, 3) with its products alone, off the diagonal, rounded to single precision."""
-    rounded = _single(tensor)
+    rounded = in_single(tensor)
     return np.asarray(_diagonal(tensor) + rounded - _diagonal(rounded))
-
-
-def _single(values: Array) -> Array:
-    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
 
 
 def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:

@@ -11,6 +11,7 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.models.misread_state import state_causes
 from omegadot.diagnosis.models.tensors import (
     diagonal_in_single,
+    in_single,
     other_tensors,
     products_in_single,
 )
@@ -126,20 +127,16 @@ def _alike(one: Array, other: Array, condition: float) -> bool:
     return bool(np.linalg.norm(one - other) <= bound)
 
 
-def _single(values: Array) -> Array:
-    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
-
-
 def _masses(system: System) -> Iterator[tuple[str, Array]]:
     mass = np.asarray(system.body.mass, dtype=float)
-    yield "the mass is kept in single precision", _single(mass)
+    yield "the mass is kept in single precision", in_single(mass)
     yield "the mass is inverted: its reciprocal is held", 1.0 / mass
     yield "the mass is 1 kg, whatever was requested", np.ones(())
 
 
 def _centers(system: System) -> Iterator[tuple[str, Array]]:
     center = np.asarray(system.body.center_of_mass, dtype=float)
-    yield "the centre of mass is kept in single precision", _single(center)
+    yield "the centre of mass is kept in single precision", in_single(center)
     yield "the centre of mass is ignored: it reads back at the body's origin", 0 * center
     yield "the centre of mass has the wrong sign: it lies on the origin's other side", -center
     for axis in range(3):
@@ -160,7 +157,7 @@ def _centers(system: System) -> Iterator[tuple[str, Array]]:
 
 def _inertias(system: System) -> Iterator[tuple[str, Array]]:
     tensor = np.asarray(system.body.inertia, dtype=float)
-    yield "the inertia is kept in single precision", _single(tensor)
+    yield "the inertia is kept in single precision", in_single(tensor)
     alone = "of inertia alone are kept in single precision"
     yield f"the moments {alone}", diagonal_in_single(tensor)
     yield f"the products {alone}", products_in_single(tensor)

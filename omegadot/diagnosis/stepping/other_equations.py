@@ -23,7 +23,7 @@ NOT_STEPPED = ("report", "precision")
 
 @dataclass(frozen=True, eq=False)
 class _Same:
-    """A system that is compared by identity: one is asked for again and again."""
+    """A system that is compared by identity: one is looked up again and again."""
 
     system: System
 

@@ -70,6 +70,16 @@ def body_scale(system: System) -> BodyScale:
     return BodyScale(mass, lever, max(own + mass * lever**2, float(moments[-1])), float(moments[0]))
 
 
+def omega_dot_bound(system: System, eps: float) -> float:
+    """``64 eps cond``: what omega-dot may be off by, in parts of ``S / J``.
+
+    S is `torque_size`, ``cond = J / lambda``, J the largest inertia and lambda the least moment
+    that is inverted: an engine that inverts the inertia cannot do better.
+    """
+    scale = body_scale(system)
+    return ROUNDINGS_PER_EVALUATION * eps * (scale.largest / scale.smallest)
+
+
 def torque_size(system: System, state: State, acceleration: Acceleration) -> Array:
     """(...) N m: the terms of equation (8) added up by size, with what cancels among them.
 

@@ -13,6 +13,7 @@ from omegadot.gates.bounds.scales import (
     body_scale,
     linear_size,
     norm,
+    omega_dot_bound,
     torque_size,
 )
 from omegadot.gates.case import Case
@@ -152,8 +153,7 @@ def forward_rows(
     """Forward dynamics against equation (8).
 
     omega_dot: ``J |omega_dot - reference| / S``, S the terms of (8) by size (`torque_size`) and J
-    the largest inertia among them, within ``64 eps cond``, ``cond = J / smallest``: an engine that
-    inverts the inertia cannot do better.
+    the largest inertia among them, within ``64 eps cond`` (`omega_dot_bound`).
     linear_momentum: the centre of mass's acceleration, relative to its terms by size.
     """
     true = forward_dynamics(extended(system), extended(states))
@@ -168,11 +168,9 @@ def forward_rows(
 def _omega_dot_row(
     system: System, states: State, omega_dot: Array, true: Acceleration, metric: str, eps: float
 ) -> Row:
-    scale = body_scale(system)
-    size = torque_size(system, states, in_doubles(true)) / scale.largest
+    size = torque_size(system, states, in_doubles(true)) / body_scale(system).largest
     apart = _apart(omega_dot, true.angular)
-    bound = ROUNDINGS_PER_EVALUATION * eps * (scale.largest / scale.smallest)
-    return _row("omega_dot", metric, apart, size, bound, states)
+    return _row("omega_dot", metric, apart, size, omega_dot_bound(system, eps), states)
 
 
 def reported_rows(system: System, states: State, omega_dot: Array, eps: float = EPS) -> list[Row]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.gates.bounds.roundings import PLAIN, Roundings
-from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale, norm
+from omegadot.gates.bounds.scales import EPS, norm, omega_dot_bound
 from omegadot.gates.rows import Row, within
 from omegadot.gates.steps.limits import NOTHING, Limit, Tolerated, limits
 from omegadot.gates.steps.probe import Probe, ladder_of
@@ -43,13 +43,13 @@ def rows(
     known: whether the scheme is.  Where ``64 eps J / lambda`` reaches one, rounding leaves no digit
     of the inertia's inverse.
     """
-    scale, digits = body_scale(system), ladder_of(eps).digits
+    digits = ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
         found = limits(system, probe, stepped, eps, tolerated, known, roundings)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None
-        if wrong and ROUNDINGS_PER_EVALUATION * eps * scale.largest >= scale.smallest:
+        if wrong and omega_dot_bound(system, eps) >= 1.0:
             worst = max(shares, key=lambda channel: shares[channel])
             return [Row(GATE, worst, METRIC, shares[worst], "1", 1.0, "info", UNDETERMINED)]
         notes = {

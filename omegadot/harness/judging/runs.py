@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
+from omegadot.gates.bounds.scales import EPS, omega_dot_bound
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import coordinates, rounding_step
 from omegadot.gates.errors.findings import (
@@ -131,8 +131,8 @@ def _undetermined(truth: Truth, findings: dict[str, Finding]) -> dict[str, Findi
     In single precision ``64 eps J / lambda`` may reach one. What steps the angular momentum then
     turns its rounding into an omega of the motion's own size, and more at the next step.
     """
-    scale, eps = truth.yardstick.scale, truth.yardstick.eps
-    if ROUNDINGS_PER_EVALUATION * eps * scale.largest < scale.smallest or eps <= EPS:
+    system, eps = truth.yardstick.system, truth.yardstick.eps
+    if omega_dot_bound(system, eps) < 1.0 or eps <= EPS:
         return findings
     return dict.fromkeys(findings, Finding("beyond", UNDETERMINED))
 

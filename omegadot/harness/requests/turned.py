@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.gates.case import Case
-from omegadot.harness.drive import CaseResult, Driver
-from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.drive import Driver
+from omegadot.harness.outcome import EngineCase
 from omegadot.reference_impl.rotations import conjugate, quaternion_product, rotate
 from omegadot.reference_impl.system import Array, State
 
@@ -20,17 +20,23 @@ from omegadot.reference_impl.system import Array, State
 TURNS = (np.array([0.5, 0.5, 0.5, 0.5]), np.array([0.8, 0.4, -0.2, 0.4]))
 
 
-def request_turned(driver: Driver, case: Case, result: CaseResult, runs: list[JudgedRun]) -> None:
-    """Each of these runs in turned worlds, with its states turned back, into `result`.
+def axes_may_decide(case: Case, found: EngineCase) -> bool:
+    """Whether any run of the engine may err by the coordinates that it takes, not yet seen."""
+    return any(run.by_axes for run in found.runs)
+
+
+def request_turned(driver: Driver, case: Case, found: EngineCase) -> None:
+    """Each run that the axes may decide in turned worlds, its states turned back, into the result.
 
     The motion is the same but for the turn: ``q' = t q``, ``p' = t p``, ``g' = t g`` and so on.
     """
     for turn, other in _turned_cases(case):
-        for run in runs:
+        for run in (run for run in found.runs if run.by_axes):
             answer = driver.run(other, run.integrator.name, run.sweep)
             if answer.ok and len(answer.result["time"]) == len(run.sweep.times):
                 state = turned(State(**answer.result["state"]), conjugate(turn))
-                result.turned.setdefault((run.integrator.name, run.sweep.knob), []).append(state)
+                key = run.integrator.name, run.sweep.knob
+                found.result.turned.setdefault(key, []).append(state)
 
 
 def _turned_cases(case: Case) -> Iterator[tuple[Array, Case]]:

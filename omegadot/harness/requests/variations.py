@@ -33,8 +33,8 @@ def other_loads(system: System) -> Iterator[tuple[str, System]]:
     gyration = np.sqrt(np.trace(system.body.inertia) / system.body.mass)
     if load.pivot is None:
         held = np.asarray(system.body.center_of_mass) - gyration * np.array(ASIDE)
-        hung = replace(load, pivot=held, gravity=np.array([0.0, 0.0, -PULL]))
-        yield "weight", replace(system, load=hung)
+        hanging = replace(load, pivot=held, gravity=np.array([0.0, 0.0, -PULL]))
+        yield "weight", replace(system, load=hanging)
     elif np.any(lever(system)):
         on_it = replace(load, pivot=np.asarray(system.body.center_of_mass))
         yield "lever", replace(system, load=on_it)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
 from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import State, System
+from omegadot.reference_impl.system import Array, State, System
 
 Run = Callable[[State, float, int, int], Trajectory]
 """A run by one integrator: of the initial state, the step in s, the steps, and those a sample."""
@@ -44,6 +44,13 @@ loaded = partial(fault_by, Spoiled, "loaded", "state")
 def rows(state: State, which: NDArray[np.intp] | slice) -> State:
     """Some samples of a run."""
     return State(*(values[which] for values in vars(state).values()))
+
+
+def half_a_step_back(values: Array, rate: Array, timestep: float) -> Array:
+    """Samples (n, 3), all but the first, taken back by half a step at their rate."""
+    taken = values.copy()
+    taken[1:] -= 0.5 * timestep * rate[1:]
+    return taken
 
 
 @logged("logging", "trajectory", named="the first sample is missing")

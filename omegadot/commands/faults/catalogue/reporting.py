@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.logging import Run, other_run, rows
+from omegadot.commands.faults.catalogue.logging import Run, half_a_step_back, other_run, rows
 from omegadot.commands.faults.catalogue.stepping import long_step_end, step_end
 from omegadot.commands.faults.fault import Spoiled, fault, logged
 from omegadot.diagnosis.stepping import step_ends
@@ -39,8 +39,7 @@ class OmegaAtHalfStep(Spoiled):
         """Taken back by half a step's omega-dot, but for the start."""
         found = super().run(initial, integrator, timestep, steps, every)
         w_dot = self.inner.forward_dynamics(found.state).angular
-        w = found.state.angular_velocity.copy()
-        w[1:] -= 0.5 * timestep * w_dot[1:]
+        w = half_a_step_back(found.state.angular_velocity, w_dot, timestep)
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 

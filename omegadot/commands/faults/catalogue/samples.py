@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.logging import Run, other_run, rows
+from omegadot.commands.faults.catalogue.logging import Run, half_a_step_back, other_run, rows
 from omegadot.commands.faults.fault import Spoiled, fault
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.stepping import kept_steps
@@ -64,8 +64,7 @@ class VelocityAtHalfStep(Spoiled):
         """Taken back by half a step's acceleration, but for the start."""
         found = super().run(initial, integrator, timestep, steps, every)
         rate = self.inner.forward_dynamics(found.state).linear
-        v = found.state.linear_velocity.copy()
-        v[1:] -= 0.5 * timestep * rate[1:]
+        v = half_a_step_back(found.state.linear_velocity, rate, timestep)
         return Trajectory(found.time, replace(found.state, linear_velocity=v))
 
 

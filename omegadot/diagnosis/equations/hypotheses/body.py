@@ -16,9 +16,8 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_body,
     of_form,
     of_load,
-    single,
 )
-from omegadot.diagnosis.models.tensors import diagonal_in_single, products_in_single
+from omegadot.diagnosis.models.tensors import diagonal_in_single, in_single, products_in_single
 from omegadot.reference_impl.system import Array
 
 
@@ -75,9 +74,9 @@ def report_hypotheses() -> Iterator[Hypothesis]:
 def precision_hypotheses() -> Iterator[Hypothesis]:
     """Each of them."""
     kept = "is kept in single precision"
-    yield of_body(f"the mass {kept}", "precision", lambda body, s: {"mass": single(body.mass)})
+    yield of_body(f"the mass {kept}", "precision", lambda body, s: {"mass": in_single(body.mass)})
     yield of_body(
-        f"the inertia {kept}", "precision", lambda body, s: {"inertia": single(body.inertia)}
+        f"the inertia {kept}", "precision", lambda body, s: {"inertia": in_single(body.inertia)}
     )
     for what, rounded in (("moments", diagonal_in_single), ("products", products_in_single)):
         yield of_body(
@@ -88,18 +87,18 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
     yield of_body(
         f"the centre of mass {kept}",
         "precision",
-        lambda body, s: {"center_of_mass": single(body.center_of_mass)},
+        lambda body, s: {"center_of_mass": in_single(body.center_of_mass)},
     )
     yield of_body(
         "mass, centre of mass and inertia are kept in single precision",
         "precision",
-        lambda body, s: {name: single(value) for name, value in vars(body).items()},
+        lambda body, s: {name: in_single(value) for name, value in vars(body).items()},
     )
     for what, name in (("inverse of the inertia", "solve"), ("gyroscopic term's inertia", "spin")):
         yield of_form(
             f"the {what} {kept}",
             "precision",
-            given(name, lambda k, f, s: {k: single(getattr(f, k))}),
+            given(name, lambda k, f, s: {k: in_single(getattr(f, k))}),
         )
     yield of_form(
         f"the inertia about the pivot {kept}",
@@ -112,18 +111,18 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
             "precision",
             given(
                 name,
-                lambda k, one: {k: None if getattr(one, k) is None else single(getattr(one, k))},
+                lambda k, one: {k: None if getattr(one, k) is None else in_single(getattr(one, k))},
             ),
         )
-    yield of_load(f"the applied torque {kept}", "precision", lambda one: applied(one, single))
+    yield of_load(f"the applied torque {kept}", "precision", lambda one: applied(one, in_single))
     yield of_load(
         "all loads are kept in single precision",
         "precision",
-        lambda one: {k: None if v is None else single(v) for k, v in vars(one).items()},
+        lambda one: {k: None if v is None else in_single(v) for k, v in vars(one).items()},
     )
 
 
 def _about_pivot(form: Form) -> dict[str, Array]:
     """The whole inertia rounded, in the solve and in the gyroscopic term."""
-    whole = single(form.spin)
+    whole = in_single(form.spin)
     return {"solve": np.linalg.inv(whole), "spin": whole}

@@ -96,11 +96,6 @@ def diagonal(matrix: Array) -> Array:
     return np.diag(np.diag(matrix))
 
 
-def single(values: Array) -> Array:
-    """Rounded to single precision."""
-    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
-
-
 def own_inertia(system: System) -> Array:
     """The requested inertia about the centre of mass, (3, 3)."""
     return np.asarray(system.body.inertia, dtype=float)

@@ -17,6 +17,7 @@ from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.system import Array
 
 REPORTED: tuple[Terms, ...] = (
     Terms(
@@ -59,6 +60,14 @@ REPORTED: tuple[Terms, ...] = (
         reported=True,
     ),
 )
+
+
+def _by_axes(numbers: Array, each: str) -> str:
+    """``0.1 v_x and 0.3 v_z``: each of the numbers that are not zero, with its axis."""
+    pairs = zip(numbers, AXES, strict=True)
+    return " and ".join(each.format(number(float(k)), axis) for k, axis in pairs if k)
+
+
 LINEAR: tuple[Terms, ...] = (
     Terms(
         "drag square",
@@ -74,7 +83,7 @@ LINEAR: tuple[Terms, ...] = (
         lambda s, x, a: rows(x.linear_velocity) * free(s),
         lambda s, p: (
             "the linear velocity is damped: the acceleration has "
-            + " and ".join(f"{number(float(k))} v_{a}" for a, k in zip(AXES, p, strict=True) if k)
+            + _by_axes(p, "{} v_{}")
             + " in it"
         ),
         linear=True,
@@ -101,12 +110,7 @@ LINEAR: tuple[Terms, ...] = (
             np.stack([x.position[:, [k]] * gravity_at(s, x) for k in range(3)]) * free(s)
         ),
         lambda s, p: (
-            "gravity changes with the place: "
-            + " and ".join(
-                f"by {number(float(k))} of it a metre along {a}"
-                for a, k in zip(AXES, p, strict=True)
-                if k
-            )
+            "gravity changes with the place: " + _by_axes(p, "by {} of it a metre along {}")
         ),
         linear=True,
     ),
@@ -114,9 +118,7 @@ LINEAR: tuple[Terms, ...] = (
         "spring",
         lambda s, x, a: rows(x.position) * free(s),
         lambda s, p: (
-            "the linear acceleration has "
-            + " and ".join(f"{number(float(k))} {a}" for a, k in zip(AXES, p, strict=True) if k)
-            + " of the position in it"
+            "the linear acceleration has " + _by_axes(p, "{} {}") + " of the position in it"
         ),
         linear=True,
     ),

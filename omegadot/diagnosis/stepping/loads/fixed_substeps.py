@@ -66,9 +66,11 @@ def _makes(
     names = {run.name for run in tried}
     if len(tried) < LEAST or len(names) < SCENARIOS:
         return False
+    if not all(counts[id(run)] for run in tried):
+        return False  # steps that are taken whole do not make it: it is known to fail by them
     # of the sound ones those that substeps would change say most
     apart = [run for run in sound if abs(counts[id(run)] * length - run.timestep) > WHOLE * length]
-    apart = [run for run in apart if run.timestep > length and counts[id(run)] <= MOST]
+    apart = [run for run in apart if 0 < counts[id(run)] <= MOST]
     return all(
         bool(np.all(run.sound(_substepped(by, length, counts[id(run)]))))
         for run in (*tried, *apart[:MOST_SOUND])
@@ -86,8 +88,6 @@ def _count(step: float, length: float, way: Callable[[float], float]) -> int:
 
 def _substepped(by: SchemeOf, length: float, count: int) -> SchemeOf:
     """The scheme whose steps are so many of this length, whatever is requested."""
-    if count == 0:
-        return by
     scheme = by.scheme
 
     def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:

@@ -15,12 +15,12 @@ from omegadot.written import written
 
 WHAT = {"forward": "omega-dot", "model": "a state set and read back", "first_steps": "single steps"}
 VARIED = re.compile(r"-experiment-\d+$|-by-length$")  # ends the name of a system that was changed
-GOES_ON = ("ok", "raised", "unsupported")  # outcomes after which an engine is asked again
+GOES_ON = ("ok", "raised", "unsupported")  # outcomes after which requests are made again
 MOST_SECONDS = 30.0  # of waiting for one engine's answers, whatever the number of causes
 
 
 @dataclass
-class Asked:
+class Requests:
     """lost: the answer that is given from then on; None as long as requests are made.
 
     waited: s, for its answers.  lost_in: the request that crashed or timed out, and
