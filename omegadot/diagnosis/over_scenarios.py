@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -23,6 +23,8 @@ from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.vanishing.follows import Beginning, Followed, follows
 from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.written import written
+
+FEW = 2  # as many runs follow another equation
 
 
 @dataclass
@@ -101,8 +103,9 @@ class OverScenarios:
     ) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.
 
-        One mistake is made in every run, or in the first steps of every run. evidence: of these
-        steps by scenario, where the cause may have other numbers.
+        One mistake is made in every run, or in the first steps of every run: what less than half as
+        many runs follow as another equation is an error of the scheme. evidence: of these steps by
+        scenario, where the cause may have other numbers.
         """
         names = evidence.keys() & self.beginnings.keys()
         for name in names:
@@ -110,7 +113,10 @@ class OverScenarios:
                 here = one.fitting(evidence[name])
                 answer = follows(self.beginnings[name], here, eps) if here is not None else None
                 self._followed[one.key, name] = answer
-        return {v for (key, name), v in self._followed.items() if key == one.key and name in names}
+        own = ((name, v) for (key, name), v in self._followed.items() if key == one.key)
+        counts = Counter(v for name, v in own if name in names and v is not None)
+        most = max(counts.values(), default=0)
+        return {v for v, count in counts.items() if FEW * count >= most}
 
 
 @dataclass

@@ -261,6 +261,12 @@ def test_help_and_version_are_quick(tmp_path: Path) -> None:
     assert "--timestep" in omegadot("run", "--help", folder=tmp_path).out
 
 
+def test_a_check_starts_without_tables() -> None:
+    """Caught: an import that a tenth of the time of a small check goes into, and no more."""
+    code = "import sys, omegadot.commands.check.check; sys.exit('polars' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
 def test_files_of_the_current_folder_stand_in_for_no_module(tmp_path: Path) -> None:
     for name in ("json", "inspect", "numpy", "mujoco"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit('not this one')")

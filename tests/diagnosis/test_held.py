@@ -26,4 +26,4 @@ def scenes(*names: str) -> list[Scene]:
 )
 def test_scenarios_against_a_cause_are_no_support(against: str, text: str) -> None:
     """Caught: "on 1 of the 4 scenarios that would show it", of a cause that three refute."""
-    assert Held(Candidate(), "", scenes("top"), scenes(*against)).where() == text
+    assert Held(Candidate(), "", scenes("top"), scenes(*against)).where("") == text

@@ -199,3 +199,20 @@ def test_what_is_taken_of_the_whole_batch_is_named(name: str) -> None:
     """Caught: no cause, where every state has the mean of all."""
     more, text = BATCHES[name]
     assert named(more, FEW) == {one.name: [f"in inverse dynamics, {text}"] for one in FEW}
+
+
+def test_a_triangle_of_the_inertia_is_named_on_free_and_pivoted_bodies() -> None:
+    """Caught: two texts of one mistake, one of each kind of body, neither of which is of all."""
+
+    def upper(s: System, x: State, a: Acceleration) -> Array:
+        inertia = np.asarray(moving_inertia(s))
+        return a.angular @ (np.triu(inertia) - inertia).T
+
+    found = named(upper, CASES)
+    text = (
+        "in inverse dynamics, where omega-dot is solved for, of what stays, the lower triangle of "
+        "the inertia is zero"
+    )
+    assert all(texts == [text] for texts in found.values()), found
+    free = named(upper, tuple(one for one in CASES if one.system.load.pivot is None))
+    assert all(texts == [text.replace("of what stays, ", "")] for texts in free.values()), free

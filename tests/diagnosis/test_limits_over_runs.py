@@ -74,6 +74,10 @@ def is_free(system: System) -> bool:
             linear(lambda v: np.clip(v, -3.2, 3.2)),
             "each component of the linear velocity is held within 3.2 m/s",
         ),
+        (
+            linear(lambda v: np.clip(v, [-1.5, -np.inf, -np.inf], [1.5, np.inf, np.inf])),
+            "the linear velocity along x is held within 1.5 m/s either way",
+        ),
         (turning(within(2.25), lambda s: True), "omega is held below 2.25 rad/s"),
         (
             turning(within(2.25), is_free),

@@ -11,7 +11,7 @@ from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import damping_torque, gravity_torque
+from omegadot.reference_impl.loads import damping_torque, gravity_torque, torque
 from omegadot.reference_impl.motion import (
     center_of_mass_acceleration,
     forward_dynamics,
@@ -170,6 +170,13 @@ def weight_partly_balanced_in_world(system: System, states: State) -> Accelerati
     return with_torque(system, states, rotate_inverse(q, part * rotate(q, torque)))
 
 
+def loads_by_an_attitude_without_its_sign(system: System, states: State) -> Acceleration:
+    q = states.orientation.copy()
+    q[:, 0] = np.abs(q[:, 0])
+    wrong, right = (torque(system, one) for one in (replace(states, orientation=q), states))
+    return with_torque(system, states, wrong - right)
+
+
 def gyroscopic_of_world_omega(system: System, states: State) -> Acceleration:
     turned = rotate(states.orientation, states.angular_velocity)
     wrong = cross(turned, apply(moving_inertia(system), turned))
@@ -304,6 +311,11 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "weight-world-row": (
         weight_partly_balanced_in_world,
         "of the torque of gravity in world axes the x component is scaled by 0.5",
+    ),
+    "unsigned": (
+        loads_by_an_attitude_without_its_sign,
+        "in the torques of the loads, the quaternion's scalar is rebuilt from its vector part, "
+        "without its sign",
     ),
     "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
     "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),

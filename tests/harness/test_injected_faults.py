@@ -152,7 +152,7 @@ def broken(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def hanging(tmp_path_factory: pytest.TempPathFactory) -> Run:
     adapters = [f"{INJECTED}:{name}" for name in (*HANGING, "HangsInLoad")]
     folder = tmp_path_factory.mktemp("hanging")
-    return run_engines(folder, adapters, "--timeout", 4, "--jobs", 8)
+    return run_engines(folder, adapters, "--timeout", 4, "--jobs", 10)
 
 
 def check_reason(reason: str, text: str) -> None:

@@ -21,7 +21,7 @@ from omegadot.gates.runs import repeats
 from omegadot.gates.runs.exact import exact_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
-from omegadot.reports.summary.failed_gate import is_plain
+from omegadot.reports.summary.plain import is_plain
 from omegadot.reports.text.numbers import degrees, listed, short, times_its_bound
 from omegadot.workers.harness_end.process import Answer
 

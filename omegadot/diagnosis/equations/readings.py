@@ -12,6 +12,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.gyroscopic_terms import wrong_products
 from omegadot.diagnosis.equations.operators.operands import gyroscopic, pushed
 from omegadot.diagnosis.equations.operators.operands import turned as turned_by
+from omegadot.diagnosis.equations.other_attitudes import other_attitudes
 from omegadot.diagnosis.equations.turned_inertia import turned_inertias
 from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, Misreading
 from omegadot.gates.bounds.scales import norm
@@ -209,5 +210,6 @@ READINGS = (
     *_mixed(),
     *(Reading(text, made) for text, made in turned_inertias()),
     *(Reading(text, made) for text, made in wrong_products()),
+    *(Reading(text, made) for text, made in other_attitudes()),
     *(reading for one in OF_ANY_STATE for reading in _misread(one)),
 )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
+from omegadot.diagnosis.equations.hypotheses.unsymmetric import of_whole
 from omegadot.diagnosis.equations.wrong_torque import fitting_torques
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import norm
@@ -77,13 +78,18 @@ def _forms(every: Sequence[Evidence]) -> list[str]:
         left = [t for t in (fits if left is None else left) if t in {*fits, *absent}]
         if not left:
             return []
-    return [f"in inverse dynamics, {text}" for text in left or []]
+    kept = left or []
+    alike = {of_whole(text) for text in kept if of_whole(text) != text}  # on free bodies alone
+    return [f"in inverse dynamics, {text}" for text in kept if text not in alike]
 
 
 def _wrong_forms(system: System) -> Mapping[str, Form]:
     right = form_of(system)
     made = {one.text.strip(): wrong_form([one], system, right) for one in hypotheses(system)}
-    return {text: form for text, form in made.items() if form is not None}
+    known = {text: form for text, form in made.items() if form is not None}
+    if np.array_equal(moving_inertia(system), system.body.inertia):
+        known |= {of_whole(text): form for text, form in known.items()}
+    return known
 
 
 def is_of_torque(evidence: Evidence, form: Form) -> NDArray[np.bool_]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,10 +55,10 @@ def limit_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """
     free = by.coordinates == "com-world"  # in others, the velocity that is held is another
     plain: dict[int, NDArray[np.bool_]] = {}
-    for bodies, pivoted in BODIES.items():
+    for (bodies, pivoted), laws in product(BODIES.items(), (_laws, _both_ways)):
         found = [
             f"{law.text.format(number)}{bodies}"
-            for law in _laws()
+            for law in laws()
             if free or law.field == "angular_velocity"
             for limit, number in _limits(law, runs, pivoted)
             if _holds(law, limit, by, runs, pivoted, plain)
@@ -79,6 +80,13 @@ def _laws() -> Iterator[_Law]:
                 yield _Law(field, _along(axis, sign), _cut(axis, sign), text, sign)
 
 
+def _both_ways() -> Iterator[_Law]:
+    """Of one component, looked for where no limit on one side makes the runs."""
+    for (field, what, unit), axis in product(QUANTITIES, range(3)):
+        text = f"{what} along {'xyz'[axis]} is held within {{}} {unit} either way"
+        yield _Law(field, _size_along(axis), _within(axis), text)
+
+
 def _largest(values: Array) -> Array:
     return np.asarray(np.max(np.abs(values), axis=-1))
 
@@ -91,6 +99,19 @@ def _cut(axis: int, sign: float) -> Callable[[Array, float], Array]:
     def hold(values: Array, most: float) -> Array:
         cut = values.copy()
         cut[..., axis] = sign * np.minimum(sign * values[..., axis], most)
+        return cut
+
+    return hold
+
+
+def _size_along(axis: int) -> Callable[[Array], Array]:
+    return lambda values: np.abs(values[..., axis])
+
+
+def _within(axis: int) -> Callable[[Array, float], Array]:
+    def hold(values: Array, most: float) -> Array:
+        cut = values.copy()
+        cut[..., axis] = np.clip(values[..., axis], -most, most)
         return cut
 
     return hold

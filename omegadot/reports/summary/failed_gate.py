@@ -10,11 +10,9 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.schema import GATES
+from omegadot.reports.summary.plain import PLAIN, RESIDUAL, is_plain
 from omegadot.reports.text.numbers import knob, quantity, short, times_its_bound
 
-RESIDUAL = "residual"
-# Of the states as they are given, at random and along the exact motion.
-PLAIN = (RESIDUAL, "residual_on_path")
 SHARE = 1e-3  # from which on a residual is given in percent as well
 Row = Mapping[str, Any]
 
@@ -60,15 +58,6 @@ def worst_row(rows: Sequence[Row]) -> Row:
         return worst
     here = [row for row in plain if row["scenario"] == worst["scenario"]]
     return max((row for row in here if row["channel"] == "omega_dot"), key=excess, default=worst)
-
-
-def is_plain(metric: str) -> bool:
-    """Whether a measure says something by itself.
-
-    A residual after another system was loaded, or at one state by itself, does so only where the
-    plain one passes.
-    """
-    return metric in PLAIN or not metric.startswith(RESIDUAL)
 
 
 def excess(row: Row) -> float:

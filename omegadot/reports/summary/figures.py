@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from omegadot.reports.summary.failed_gate import PLAIN
+from omegadot.reports.summary.plain import PLAIN
 from omegadot.reports.text.numbers import magnitude, times_its_bound
 
 _SUMMARISED = (

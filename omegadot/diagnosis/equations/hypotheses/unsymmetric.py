@@ -36,6 +36,13 @@ def _changes() -> Iterator[tuple[str, Change]]:
 
 
 CHANGES = tuple(_changes())
+OF_WHOLE = "of what stays, "
+
+
+def of_whole(text: str) -> str:
+    """A text about the inertia as one of what stays, which without a lever is the same."""
+    found = next((change for change, _ in CHANGES if change in text), None)
+    return text.replace(found, OF_WHOLE + found) if found and OF_WHOLE not in text else text
 
 
 def unsymmetric_hypotheses(system: System) -> Iterator[Hypothesis]:
@@ -45,7 +52,7 @@ def unsymmetric_hypotheses(system: System) -> Iterator[Hypothesis]:
     products = bool(np.any(own - np.diag(np.diag(own))))
     for text, change in CHANGES:
         if np.any(about):
-            whole = f"of what stays, {text}"
+            whole = OF_WHOLE + text
             yield from _in_places(whole, given(change, _whole))
         if products:
             yield from _in_places(text, given(change, _own))
