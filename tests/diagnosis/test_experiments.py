@@ -36,6 +36,7 @@ from omegadot.gates.states.equation import random_states
 from omegadot.harness.drive import Driver
 from omegadot.harness.requests.variations import other_bodies, other_loads, other_states
 from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
@@ -47,7 +48,11 @@ FREE = case("free", {})
 TENSOR = [[1.2, 0.1, -0.05], [0.1, 1.5, 0.07], [-0.05, 0.07, 2.0]]
 TOP = case("top", {"gravity": GRAVITY, "pivot": PIVOT, "damping": 0.1}, 2.0, TENSOR)
 DRIVEN = case("driven", {"gravity": GRAVITY, "pivot": PIVOT, "torque": BODY_TORQUE})
+BOTH = [BODY_TORQUE, {"frame": "world", "value": [-0.7, 0.2, 0.5]}]
+PUSHED = case("pushed", {"torque": BOTH})
 ROUND = case("round", {}, 1.0, np.diag([1.0, 1.0, 1.7]).tolist())
+ROD = case("rod", {}, 3.0, np.diag([9.0, 8.8, 0.4]).tolist())
+PLATE = case("plate", {"pivot": PIVOT}, 1.0, np.diag([4.0, 4.2, 8.1]).tolist())
 Where = Callable[[System, State], Any]
 
 
@@ -135,6 +140,17 @@ LIMITS: dict[str, tuple[Where, str, float]] = {
     ),
     "lock": (pitch, "the size of the sine of the pitch, |2 (w y - x z)|, is above", 0.9),
     "heavy": (lambda s, _: s.body.mass > 20.0, "the mass is above a limit between", 20.0),
+    # of one body scaled, its trace and its other moments have a limit as well
+    "long": (
+        lambda s, _: np.linalg.eigvalsh(moving_inertia(s))[-1] > 7.0,
+        "the largest moment of inertia about what stays is above a limit between",
+        7.0,
+    ),
+    "pushed": (
+        lambda s, x: np.linalg.norm(applied_torque(s, x) + 0.0 * x.angular_velocity, axis=-1) > 1.1,
+        "the size of the applied torque, of both frames together, is above a limit between",
+        1.1,
+    ),
 }
 
 
@@ -151,7 +167,8 @@ def test_a_condition_is_named(name: str) -> None:
 @pytest.mark.parametrize("name", LIMITS)
 def test_a_limit_is_closed_in_upon(name: str) -> None:
     where, text, limit = LIMITS[name]
-    found, toy = experiment(where, (FREE, TOP))
+    more = {"pushed": (PUSHED,), "long": (ROUND, ROD, PLATE)}
+    found, toy = experiment(where, (FREE, TOP, *more.get(name, ())))
     assert found.startswith(text)
     low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
     assert low < limit < high

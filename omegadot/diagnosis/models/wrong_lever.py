@@ -21,6 +21,10 @@ from omegadot.reference_impl.system import Array, State, System
 
 CLOSE = 1e-9  # relative: numbers of a state that are the same
 LEVER = "the lever from the pivot to the centre of mass"
+FROM_CENTER = (
+    f"{LEVER} is the pivot's coordinates with the other sign: either the pivot is taken as given "
+    "from the centre of mass, or the centre of mass as the origin"
+)
 
 
 def lever_causes(
@@ -47,7 +51,7 @@ def lever_causes(
             other = _held_lever(one.system, *one.states)
             systems.append(one.system)
             levers.append(_due(one.system) if other is None else other)
-    found = _law(systems, levers) if systems else ""
+    found = law_of_levers(systems, levers) if systems else ""
     found = found or _known_lever(case.system, held, systems, levers)
     return [found] if found else [_numbers(case.system, held)] * numbers
 
@@ -56,9 +60,12 @@ def _due(system: System) -> Array:
     return np.asarray(lever_of(system), dtype=float)
 
 
-def _law(systems: Sequence[System], levers: Sequence[Array]) -> str:
+def law_of_levers(systems: Sequence[System], levers: Sequence[Array]) -> str:
     """Of the levers, or of the centres of mass where the pivots are right; "" without any."""
     due = [_due(one) for one in systems]
+    pivots = [np.asarray(one.load.pivot, dtype=float) for one in systems]
+    if all(_same(held, -pivot) for pivot, held in zip(pivots, levers, strict=True)):
+        return FROM_CENTER
     text = law_of([*zip(due, levers, strict=True)], LEVER, "m")
     centers = [np.asarray(one.body.center_of_mass, dtype=float) for one in systems]
     moved = [c + lever - d for c, lever, d in zip(centers, levers, due, strict=True)]

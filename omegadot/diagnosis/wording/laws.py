@@ -92,14 +92,14 @@ def _limit(pairs: _Pairs) -> str:
     if _close(np.maximum(requested, limit), acting, size):
         return f"{each} is held above {number(limit)} {unit}"
     most = abs(limit)
-    if not few and _close(np.clip(requested, -most, most), acting, size):
+    if not few and most > 0.0 and _close(np.clip(requested, -most, most), acting, size):
         return f"{each} is limited to {number(most)} {unit} either way"
     lengths, due = pairs.lengths
     whole = changed.any(axis=-1)
     longest = float(lengths[whole][np.argmin(due[whole]), 0])
     with np.errstate(divide="ignore", invalid="ignore"):
         scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
-    if not few and _close(scaled, acting, size):
+    if not few and longest > 0.0 and _close(scaled, acting, size):
         return f"the size of {what} is limited to {number(longest)} {unit}"
     return ""
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
@@ -85,12 +86,14 @@ def _dynamic(system: System, states: State) -> Numbers:
         w = states.angular_velocity
         about = 0.5 * np.sum(w * apply(moving_inertia(system), w), axis=-1)
         momentum = norm(angular_momentum(system, states))
+        applied = norm(applied_torque(system, states) + 0.0 * w)
     return {
         "the kinetic energy of rotation, about the pivot where there is one,": (about, "J"),
         "the kinetic energy": (energy, "J"),
         "the kinetic energy over the mass": (energy / system.body.mass, "J/kg"),
         "the size of the angular momentum": (momentum, "kg m^2/s"),
         "|omega-dot|": (rate, "rad/s^2"),
+        "the size of the applied torque, of both frames together,": (applied, "N m"),
     }
 
 
