@@ -110,6 +110,10 @@ WHERE: dict[str, tuple[Where, str]] = {
     "but the first": (lambda k, n: k > 0, f"a state is not the first of those {TOGETHER}"),
     "but the last": (lambda k, n: k < n - 1, f"a state is not the last of those {TOGETHER}"),
     "the last": (lambda k, n: k == n - 1, f"a state is the last of those {TOGETHER}"),
+    "the last of several": (
+        lambda k, n: (k == n - 1) & (n > 1),
+        f"a state is the last of several {TOGETHER}",
+    ),
     "from a place on": (
         lambda k, n: k >= 16,
         f"a state is not one of the first 16 of those {TOGETHER}",

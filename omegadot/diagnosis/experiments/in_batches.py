@@ -20,6 +20,7 @@ from omegadot.diagnosis.equations.wrong_equation import equation_causes
 from omegadot.diagnosis.experiments.batch_patterns import ALONE
 from omegadot.diagnosis.experiments.batches import Batches, together
 from omegadot.diagnosis.experiments.conditioned import conditioned
+from omegadot.diagnosis.experiments.observed import Flags
 from omegadot.diagnosis.experiments.requests import Requests
 from omegadot.diagnosis.reported.requests import ONE_ALONE, is_of_place
 from omegadot.diagnosis.wording.kinds import is_named, kind_of
@@ -33,10 +34,14 @@ MOST = 6  # causes of which batches are tried
 
 @dataclass(frozen=True)
 class _Found:
-    """condition: in which batches; "" for none.  size: one whose states all show it; 0 for none."""
+    """condition: in which batches; "" for none.
+
+    size: of the least that shows it, at these places; 0 for none.
+    """
 
     condition: str = ""
     size: int = 0
+    places: tuple[int, ...] = ()
 
 
 @dataclass
@@ -62,9 +67,10 @@ class InBatches:
         kind = kind_of(text)
         if kind not in self._found:
             self._found[kind] = self._of_one(requests, name, text, torque)
-        size = self._found[kind].size
-        if size and not _names(text):
-            self._small[size, torque] = self._of_all(requests, size, INVERSE if torque else FORWARD)
+        found = self._found[kind]
+        if found.size and not _names(text):
+            source = INVERSE if torque else FORWARD
+            self._small[found.size, torque] = self._of_all(requests, found, source)
 
     def of(self, name: str, text: str, torque: bool) -> tuple[str, bool]:
         """The cause with the batches in which it acts, and whether these decide."""
@@ -96,25 +102,36 @@ class InBatches:
             if len(shows):
                 batches = Batches(requests, self.cases[name], evidence, shows)
                 condition = batches.condition()
-                every = [n for n, flags in batches.seen.items() if np.all(flags)]
-                return _Found(condition, max(every, default=0) if condition else 0)
+                return _Found(condition, *_shown_by(batches.seen)) if condition else _Found()
         return _Found()
 
-    def _of_all(self, requests: Requests, size: int, source: str) -> Across:
-        """The equations of all scenarios as they are answered in batches that show the fault."""
-        across, count = Across(), -(-LEAST // size)
+    def _of_all(self, requests: Requests, found: _Found, source: str) -> Across:
+        """The equations of all scenarios as they are answered in batches that show the fault.
+
+        Of each batch the places that show it alone: there stands every state in its turn.
+        """
+        across, size, shown = Across(), found.size, np.array(found.places, dtype=np.intp)
+        count = -(-LEAST // len(shown))
         for name, scene in self.scenes.items():
             evidence = scene.evidence.get(source)
             if evidence is None or name not in self.cases or not evidence.finite:
                 continue
-            places = np.arange(count * size, dtype=np.intp) % len(evidence.sound)
-            every = np.split(places, count)
+            first = len(shown) * np.arange(count, dtype=np.intp)[:, None]
+            every = (first + np.arange(size, dtype=np.intp)) % len(evidence.sound)
             parts = [together(requests, self.cases[name], evidence, own) for own in every]
-            known = [one for one in parts if one is not None]
+            known = [one.at(shown) for one in parts if one is not None]
             if len(known) == count:
                 own = {source: _joined(known)}
                 across.add(Scene(scene.name, scene.system, scene.features, own))
         return across
+
+
+def _shown_by(seen: Mapping[int, Flags]) -> tuple[int, tuple[int, ...]]:
+    """The largest batch whose states are all wrong, else the least with a wrong one; its places."""
+    whole = [n for n, flags in seen.items() if np.all(flags)]
+    some = [n for n, flags in seen.items() if np.any(flags)]
+    size = max(whole) if whole else min(some, default=0)
+    return size, tuple(np.flatnonzero(seen[size]).tolist()) if size else ()
 
 
 def _of_some(text: str) -> bool:
