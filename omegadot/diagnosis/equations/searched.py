@@ -69,7 +69,7 @@ class Searched:
             for level in islice(self._of(scene, source), PLAIN * (depth > PLAIN), depth):
                 if strong or conditional(partial):
                     break
-                found = self._held(level, scene, source)
+                found = self.held_of(level, scene, source)
                 weak, partial, strong = weak or found.weak, [*partial, *found.partial], found.strong
             self._quick[key] = Level(strong, weak, partial)
         return self._quick[key]
@@ -86,7 +86,7 @@ class Searched:
     def deep(self, scene: Scene, source: str) -> Iterator[Level]:
         """The levels after the quick ones."""
         for level in islice(self._of(scene, source), QUICK, None):
-            yield self._held(level, scene, source)
+            yield self.held_of(level, scene, source)
 
     def _of(self, scene: Scene, source: str) -> Iterator[list[Candidate]]:
         """The levels of one scenario, each worked out once; the deep ones of a few alone."""
@@ -97,13 +97,15 @@ class Searched:
             self._levels[key] = _Levels(found)
         return iter(self._levels[key])
 
-    def _held(self, level: Sequence[Candidate], scene: Scene, source: str) -> Level:
+    def held_of(self, level: Sequence[Candidate], scene: Scene, source: str) -> Level:
         """What fits one scenario, held against all others."""
         distinct = {one.key: one for one in level}.values()
         held = [self._scenes.held(one, scene, source) for one in distinct]
         whole = [one for one in held if one.holds]
         strong = [one for one in whole if one.strong]
         least = min((len(one.against) for one in strong), default=0)
-        strong = [one for one in strong if len(one.against) == least]
+        if not least or any(len(one.shown) > 1 for one in strong):
+            # of one scenario, numbers that act there alone are none likelier than others
+            strong = [one for one in strong if len(one.against) == least]
         partial = [one for one in held if not one.contradicted]
         return Level(strong, [] if strong else whole, partial)
