@@ -152,8 +152,8 @@ def test_single_precision_has_inverse_dynamics(load: str) -> None:
 def test_the_two_precisions_leave_each_other_alone() -> None:
     of = system("full", "all")
     both = [loaded(of, single) for single in (False, True)]
-    once = [adapter.run(a_start(of), "Euler", STEP, 5, 1).state for adapter in both]
-    again = [adapter.run(a_start(of), "Euler", STEP, 5, 1).state for adapter in both]
+    once = [adapter.run(a_start(of), "RK4", STEP, 5, 1).state for adapter in both]
+    again = [adapter.run(a_start(of), "RK4", STEP, 5, 1).state for adapter in both]
     for first, second in zip(once, again, strict=True):
         assert all(map(np.array_equal, parts(first), parts(second)))
     omegas = [state.angular_velocity for state in once]
@@ -164,19 +164,16 @@ def test_the_two_precisions_leave_each_other_alone() -> None:
 def test_one_program_serves_every_body(pivot: Array | None) -> None:
     """MuJoCo's compiler marks a body at its origin, in principal axes: XLA must not see it."""
     adapter = MjxAdapter()
-    programs, structures = adapter._programs, set()
     for inertia in ("diagonal", "full", "sphere"):
         for center in (np.zeros(3), OFFSET):
             body = system(inertia, center=center).body
             adapter.load(System((body,), Load(pivot=pivot)))
-            structures.add(adapter._own()._structure)
             for steps, every in ((1, 1), (7, 3), (2 * ROWS, 1)):
                 adapter.run(spinning(1.0, 2.0, 3.0), "Euler", 0.01 / steps, steps, every)
             adapter.forward_dynamics(states(3))
             adapter.forward_dynamics(states(STATES + 1))
-    (structure,) = structures
-    assert programs.steps(structure, KINDS["Euler"])._cache_size() == 1
-    assert programs.forward(structure)._cache_size() == 1
+    kinds = sorted(kind for kind, _ in adapter._programs.compiled)
+    assert kinds == ["EULER", "forward"]
 
 
 def test_long_runs_and_large_batches_are_those_of_their_parts() -> None:
@@ -191,7 +188,8 @@ def test_long_runs_and_large_batches_are_those_of_their_parts() -> None:
     found = adapter.forward_dynamics(many)
     for row in (0, STATES - 1, STATES, STATES + 43):
         one = State(*(value[row : row + 1] for value in parts(many)))
-        assert np.array_equal(adapter.forward_dynamics(one).angular[0], found.angular[row])
+        alone = adapter.forward_dynamics(one).angular
+        assert norm(alone - found.angular[row])[0] <= angular_bound(of, one)[0]
 
 
 def test_a_slow_omega_does_not_turn_the_body() -> None:

@@ -19,6 +19,7 @@ from typing import Any, Literal
 import numpy as np
 
 from omegadot.adapters.mujoco.model import (
+    BODY,
     DISABLED,
     apply_setup,
     body_of,
@@ -32,6 +33,9 @@ from omegadot.reference_impl.system import Body, System
 
 # Any body whose centre of mass is off its origin and whose axes are turned.
 STAND_IN = Body(np.array(1.0), np.ones(3), 4.0 * np.eye(3) - np.ones((3, 3)) / 3.0)
+
+# Precisions of the programs in this process.
+_TRACED: set[str] = set()
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,16 @@ class Engine:
     def processor(self) -> Any:
         """The device that computes."""
         return self.jax.devices("cpu")[0]
+
+    def begin_program(self) -> None:
+        """Before a program is traced: JAX lets go of constants of the other precision.
+
+        It keeps MJX's tables for RK4 as it has lowered them once, and then fails in the other one.
+        Programs that are compiled stay.
+        """
+        _TRACED.add(self.precision)
+        if len(_TRACED) > 1:
+            self.jax.clear_caches()
 
     @contextlib.contextmanager
     def active(self) -> Iterator[None]:
@@ -81,6 +95,7 @@ def put_system(engine: Engine, system: System, setup: Setup) -> Any:
     check_body(engine.mujoco, system)
     model = build_model(engine.mujoco, System((STAND_IN,), system.load))
     write_body(engine.mujoco, model, system.body)
+    model.body_sameframe[BODY] = 0  # a shortcut of MuJoCo's own, by which structures would differ
     apply_setup(engine.mujoco, model, setup)
     with engine.active():
         return engine.mjx.put_model(model, device=engine.processor)

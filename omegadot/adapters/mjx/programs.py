@@ -5,8 +5,6 @@ The numbers of a model are arguments. Its structure is fixed in a program, which
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -20,13 +18,23 @@ STATES = 256  # at once: more are taken in several calls, as each number of them
 
 
 class Programs:
-    """The programs of one engine, each compiled when it is first called."""
+    """The programs of one engine, each compiled when it is first called, and never again."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self.steps: Callable[..., Any] = cache(self._steps)
-        self.forward: Callable[..., Any] = cache(self._forward)
-        self.inverse: Callable[..., Any] = cache(self._inverse)
+        self.compiled: dict[tuple[str, Any], Any] = {}
+
+    def of(self, kind: str, structure: Any, arguments: tuple[Any, ...]) -> Any:
+        """The program of a kind, for arguments of these shapes: one of ``KINDS``' integrators,
+        "forward" or "inverse".
+        """
+        key = (kind, structure)
+        if key not in self.compiled:
+            own = {"forward": self._forward, "inverse": self._inverse}
+            made = own[kind](structure) if kind in own else self._steps(structure, kind)
+            self._engine.begin_program()
+            self.compiled[key] = made.lower(*arguments).compile()
+        return self.compiled[key]
 
     def _data(self, model: Any, applied: Any, qpos: Any, qvel: Any) -> Any:
         """`mjx.Data` with torques (6,), in body axes and in world axes, as MuJoCo's adapter."""
@@ -105,6 +113,7 @@ class Loaded:
 
     def __init__(self, engine: Engine, programs: Programs, model: Any, load: Load) -> None:
         self._engine, self._programs, self.places = engine, programs, int(model.nq)
+        self._called: dict[str, Any] = {}
         torques = np.concatenate((np.broadcast_to(load.torque_body, 3), load.torque_world))
         with engine.active():
             leaves, self._structure = engine.jax.tree.flatten(model)
@@ -115,35 +124,37 @@ class Loaded:
         """An array in the engine's precision."""
         return np.asarray(values, self._engine.precision)
 
-    def _in_batches(self, program: Any, *columns: Array) -> Array:
+    def _call(self, kind: str, *arguments: Any) -> Any:
+        given = (self._numbers, self._applied, *arguments)
+        if kind not in self._called:  # to look for a structure takes a millisecond
+            self._called[kind] = self._programs.of(kind, self._structure, given)
+        return self._called[kind](*given)
+
+    def _in_batches(self, kind: str, *columns: Array) -> Array:
         """A program's answers for n rows of each column; the last batch is filled with its end."""
         rows, found = len(columns[0]), []
-        for first in range(0, rows, STATES):
-            taken = np.minimum(np.arange(first, first + STATES), rows - 1)
-            batch = [self.rounded(column[taken]) for column in columns]
-            found.append(np.array(program(self._numbers, self._applied, *batch), float))
+        with self._engine.active():
+            for first in range(0, rows, STATES):
+                taken = np.minimum(np.arange(first, first + STATES), rows - 1)
+                batch = [self.rounded(column[taken]) for column in columns]
+                found.append(np.array(self._call(kind, *batch), float))
         return np.concatenate(found)[:rows]
 
     def forward(self, qpos: Array, qvel: Array) -> Array:
         """``qacc`` of `mjx.forward` at n states, (n, nv)."""
-        with self._engine.active():
-            return self._in_batches(self._programs.forward(self._structure), qpos, qvel)
+        return self._in_batches("forward", qpos, qvel)
 
     def inverse(self, qpos: Array, qvel: Array, qacc: Array) -> Array:
         """Generalised forces of `mjx.inverse` at n states and accelerations, (n, nv)."""
-        with self._engine.active():
-            return self._in_batches(self._programs.inverse(self._structure), qpos, qvel, qacc)
+        return self._in_batches("inverse", qpos, qvel, qacc)
 
     def run(self, start: Array, kind: str, timestep: float, steps: int, every: int) -> list[Any]:
         """Rows (qpos, qvel) at the start, each `every`-th step and the last."""
+        row, h, most = self.rounded(start), self.rounded(timestep), ROWS * every
+        found = [row[None]]
         with self._engine.active():
-            program, begun = self._programs.steps(self._structure, kind), self.rounded(start)
-            h, found, most = self.rounded(timestep), [begun[None]], ROWS * every
-            row = self._engine.jax.device_put(begun, self._engine.processor)  # as later rows are
             for done in range(0, steps, most):
                 left = min(most, steps - done)
-                rows, row = program(
-                    self._numbers, self._applied, row, h, np.int32(left), np.int32(min(every, left))
-                )
+                rows, row = self._call(kind, row, h, np.int32(left), np.int32(min(every, left)))
                 found.append(np.asarray(rows)[: -(-left // every)])
         return found
