@@ -34,16 +34,23 @@ EXTRAS: dict[str, str] = {
     "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
     "exudyn": "omegadot.adapters.exudyn.adapter:ExudynAdapter",
     "basilisk": "omegadot.adapters.basilisk.adapter:BasiliskAdapter",
+    "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
+    "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
 }
-"""Engines that an extra of the same name installs: ``pip install 'omegadot[drake]'``."""
+"""Engines that an extra installs, by the name before a hyphen: ``pip install 'omegadot[mjx]'``."""
 NODE: dict[str, str] = {
     name: f"omegadot.adapters.node.adapter:{name.replace('-', '_')}" for name in NODE_ENGINES
 }
 """Engines that run through Node: ``omegadot engines --install node``."""
 OPTIONAL = {**EXTRAS, **NODE}
 OURS = {**BUILT_IN, **OPTIONAL}
-# The module of an optional engine, by which it is known to be there.
-_MODULES = {"drake": "pydrake", "exudyn": "exudyn", "basilisk": "Basilisk"}
+# The modules of an extra's engines, by which they are known to be there.
+_MODULES = {
+    "drake": ("pydrake",),
+    "exudyn": ("exudyn",),
+    "basilisk": ("Basilisk",),
+    "mjx": ("jax", "mujoco.mjx"),
+}
 
 
 class AdapterError(ValueError):
@@ -62,7 +69,20 @@ def is_absent(name: str) -> bool:
     """Whether this is an optional engine whose package is not installed."""
     if name in NODE:
         return bool(missing(name))
-    return name in EXTRAS and importlib.util.find_spec(_MODULES[name]) is None
+    return name in EXTRAS and not all(map(_is_there, _MODULES[_extra_of(name)]))
+
+
+def _extra_of(name: str) -> str:
+    return name.partition("-")[0]
+
+
+def _is_there(module: str) -> bool:
+    """Whether a module can be found, without importing the package that it is in."""
+    package, _, inner = module.partition(".")
+    spec = importlib.util.find_spec(package)
+    if spec is None or not inner:
+        return spec is not None
+    return any((Path(folder) / inner).is_dir() for folder in spec.submodule_search_locations or ())
 
 
 def _import_target(module_name: str) -> ModuleType:
@@ -172,5 +192,5 @@ def _made(factory: Callable[..., Adapter | str], target: str, setup: Setup) -> A
         return factory(setup=setup)
     except ModuleNotFoundError as error:
         extra = next((name for name, own in EXTRAS.items() if own == target), "")
-        advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
+        advice = f"; install it with pip install 'omegadot[{_extra_of(extra)}]'" if extra else ""
         raise ImportError(f"{error}{advice}") from error

@@ -17,7 +17,8 @@ import psutil
 
 RECORDED = (
     "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2",
-    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk"
+    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk",
+    "mujoco-mjx", "jax", "jaxlib"
 )  # fmt: skip
 
 # Of control groups, version 2 and 1. A container sees its own group as the root.

@@ -48,7 +48,7 @@ def version_of(text: str) -> tuple[int, ...]:
     return tuple(int(part) for part in takewhile(str.isdigit, text.split(".")))
 
 
-def _explicit(name: str, damping_is_implicit: bool) -> Integrator:
+def explicit(name: str, damping_is_implicit: bool) -> Integrator:
     """The gyroscopic term is taken at the step's start; damping may be implicit."""
     scheme = "implicit-damping-euler" if damping_is_implicit else "semi-implicit-euler"
     return Integrator(name, scheme, _orders(1, 1))
@@ -67,7 +67,8 @@ def _midpoint(name: str, case: Case) -> Integrator:
     return Integrator(name, scheme, orders, note=_MIDPOINT_NOTE)
 
 
-def _rk4(case: Case) -> Integrator:
+def rk4(case: Case) -> Integrator:
+    """Of order 4 from MuJoCo 4 on; before, the mean of the stages' omegas turns the body."""
     if case.version >= (4,):
         return Integrator("RK4", "munthe-kaas-rk4", _orders(4, 4))
     orders = _orders(2, 2)
@@ -81,17 +82,17 @@ def _declared(name: str, case: Case) -> Integrator:
     version, midpoint = case.version, False
     match name:
         case "RK4":
-            return _rk4(case)
+            return rk4(case)
         case "Euler":
-            return _explicit(name, case.damped and case.euler_damps)
+            return explicit(name, case.damped and case.euler_damps)
         case "implicit":
             midpoint = (3, 7) <= version < (3, 8, 1) and not case.pivoted
         case "implicitfast" if case.pivoted or version < (3, 7):
-            return _explicit(name, case.damped)
+            return explicit(name, case.damped)
         case "implicitfast":
             midpoint = version < (3, 11)
         case "discrete" if case.pivoted:
-            return _explicit(name, case.damped)
+            return explicit(name, case.damped)
     if midpoint:
         return _midpoint(name, case)
     return Integrator(name, "linearly-implicit-euler", _orders(1, 1))

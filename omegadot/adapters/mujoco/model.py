@@ -16,7 +16,7 @@ from omegadot.written import written
 BODY = 1  # body 0 is MuJoCo's world
 
 # Flags by name: a version knows only some of them, and what it lacks it cannot do wrong.
-_DISABLED = {
+DISABLED = {
     "mjDSBL_AUTORESET": "reset to the model's first pose when the state diverges",
     "mjDSBL_EULERDAMP": "implicit treatment of damping in the Euler integrator",
     "mjDSBL_CONTACT": "contacts",
@@ -39,7 +39,7 @@ def import_mujoco() -> Any:
 
 def switched_off(mujoco: Any) -> tuple[str, ...]:
     """What the ``physics`` setup turns off in the installed version, one clause each."""
-    known = [what for name, what in _DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
+    known = [what for name, what in DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
     return (*known, "sleep, other optional flags and a viscous medium, which are off by default")
 
 
@@ -92,7 +92,7 @@ def build_model(mujoco: Any, system: System) -> Any:
     """
     check_body(mujoco, system)
     body, load = system.body, system.load
-    moments, axes = principal_frame(np.asarray(body.inertia, dtype=float))
+    axes = principal_frame(np.asarray(body.inertia, dtype=float))[1]
     spec = mujoco.MjSpec()
     element = spec.worldbody.add_body(name="body")
     if load.pivot is None:
@@ -104,19 +104,25 @@ def build_model(mujoco: Any, system: System) -> Any:
     element.mass, element.inertia = 1.0, np.ones(3)
     element.ipos, element.iquat = body.center_of_mass, axes
     model = spec.compile()
-    model.body_mass[BODY], model.body_inertia[BODY] = body.mass, moments
-    model.body_ipos[BODY], model.body_iquat[BODY] = body.center_of_mass, axes
     model.dof_damping[-3:] = load.damping  # a free joint's first three are translations
     model.opt.gravity[:] = load.gravity
-    mujoco.mj_setConst(model, mujoco.MjData(model))
+    write_body(mujoco, model, body)
     return model
+
+
+def write_body(mujoco: Any, model: Any, body: Body) -> None:
+    """Mass, centre of mass and inertia of the body into a compiled model, in place."""
+    moments, axes = principal_frame(np.asarray(body.inertia, dtype=float))
+    model.body_mass[BODY], model.body_inertia[BODY] = body.mass, moments
+    model.body_ipos[BODY], model.body_iquat[BODY] = body.center_of_mass, axes
+    mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def apply_setup(mujoco: Any, model: Any, setup: Setup) -> None:
     """Turn off the defaults that disturb the motion, or leave every default of MuJoCo as it is."""
     if setup == "as-shipped":
         return
-    for name in _DISABLED:
+    for name in DISABLED:
         flag = getattr(mujoco.mjtDisableBit, name, None)
         if flag is not None:
             model.opt.disableflags |= int(flag)

@@ -18,7 +18,7 @@ _ENUMERATED = {
 }
 
 
-def _model(mujoco: Any, joint: str) -> Any:
+def offset_body(mujoco: Any, joint: str) -> Any:
     """A body on a joint, its centre of mass off its origin."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body(name="body")
@@ -32,7 +32,7 @@ def _seen(mujoco: Any, joint: str, first: int) -> Array:
     """Angular and linear velocity (6,) of the body's origin in world axes where the joint's
     velocities from `first` on are ``GIVEN``.
     """
-    model = _model(mujoco, joint)
+    model = offset_body(mujoco, joint)
     data = mujoco.MjData(model)
     data.qpos[-4:] = TURNED_QUATERNION
     data.qvel[first : first + 3] = GIVEN
@@ -47,7 +47,7 @@ def conventions(mujoco: Any) -> dict[str, str]:
     free, ball = "mjJNT_FREE", "mjJNT_BALL"
     turning, moving = _seen(mujoco, free, 3), _seen(mujoco, free, 0)
     at_rest = np.all(np.abs(turning[3:]) <= 64 * np.finfo(float).eps)
-    scalar_first = _model(mujoco, free).qpos0[3] == 1.0
+    scalar_first = offset_body(mujoco, free).qpos0[3] == 1.0
     return {
         "quaternion order": "w, x, y, z" if scalar_first else "x, y, z, w",
         "free joint angular velocity frame": axes_observed(turning[:3]),
@@ -59,7 +59,7 @@ def conventions(mujoco: Any) -> dict[str, str]:
 
 def defaults(mujoco: Any) -> dict[str, str]:
     """Every option of a new model, name to value."""
-    option = _model(mujoco, "mjJNT_FREE").opt
+    option = offset_body(mujoco, "mjJNT_FREE").opt
     found = {}
     for name in sorted(dir(option)):
         value = getattr(option, name)

@@ -20,6 +20,8 @@ PACKAGES = {
     "drake": "drake",
     "exudyn": "exudyn",
     "basilisk": "bsk",
+    "mjx": "mujoco-mjx",
+    "mjx-float32": "mujoco-mjx",
 }
 # More than any minor version of Python has had.
 MOST_RELEASES = 40

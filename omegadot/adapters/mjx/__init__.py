@@ -1,0 +1,1 @@
+"""MuJoCo's MJX, on JAX, behind the protocol."""
