@@ -12,7 +12,7 @@ from omegadot.diagnosis.wording.digits import factor
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm, torque_size
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
+from omegadot.reference_impl.inertia import lever, moving_inertia, parallel_axis
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
@@ -149,8 +149,32 @@ def _other_bodies(
         "inverse dynamics have the products of inertia with the wrong sign": by(
             2.0 * diagonal - inertia, 2.0 * diagonal - inertia
         ),
+        **_other_acceleration(system, states, requested),
         "inverse dynamics invert the inertia": by(np.asarray(inverse(inertia)), inertia),
         "inverse dynamics give the torque of the acceleration that the loads cause": lambda: (
             inverse_dynamics(system, states, forward_dynamics(system, states))
         ),
+    }
+
+
+def _other_acceleration(
+    system: System, states: State, requested: Acceleration
+) -> dict[str, Callable[[], Array]]:
+    """The sum of what turns the body and of ``r x m (a - g)``, with another acceleration a."""
+    arm, w, q = lever(system), states.angular_velocity, states.orientation
+    tangential, inward = cross(requested.angular, arm), cross(w, cross(w, arm))
+    mass = float(system.body.mass)
+
+    def by(other: Array) -> Callable[[], Array]:
+        more = cross(arm, mass * (other - tangential - inward))
+        return lambda: inverse_dynamics(system, states, requested) + more
+
+    if system.load.pivot is None:
+        return {}
+    of = "inverse dynamics have the acceleration of the centre of mass"
+    return {
+        f"{of} in world axes, in place of body axes": by(rotate(q, tangential + inward)),
+        f"{of} without omega x (omega x r)": by(tangential),
+        f"{of} without omega-dot x r": by(inward),
+        f"{of} with the wrong sign": by(-tangential - inward),
     }

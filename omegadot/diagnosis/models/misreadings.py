@@ -99,6 +99,19 @@ def misreadings(system: System) -> tuple[Misreading, ...]:
         Misreading(f"the position {at}", position),
         Misreading(f"the linear velocity {at}", velocity),
         Misreading(both, meant),
+        Misreading(
+            "the position is that of the body's origin and the centre of mass from it, which is "
+            "not turned into the world: it is off by c - R c",
+            lambda state: replace(
+                state, position=meant(state).position - system.body.center_of_mass
+            ),
+        ),
+        Misreading(
+            "the position has the centre of mass's distance from the origin in it once too often",
+            lambda state: replace(
+                state, position=at_point(state, -system.body.center_of_mass).position
+            ),
+        ),
     )
     by_pivot = _from_the_origin(system) if system.load.pivot is not None else ()
     by_inertia = (

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.step_ends import End, with_end
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import turn_in_body
+from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product, turn_in_body
 from omegadot.reference_impl.system import Array, State
 from omegadot.written import written
 
@@ -25,11 +25,13 @@ QUANTITIES = (
     ("linear_velocity", "the linear velocity", "m/s"),
     ("position", "the position", "m"),
 )
+PITCH = "the pitch of R_z(yaw) R_y(pitch) R_x(roll) is held within {} rad either way"
 BODIES = {
     "": (False, True),
     ", but only where the body is free": (False,),
     ", but only where the body is pivoted": (True,),
 }
+OF_TURNING = ("angular_velocity", "orientation")  # which a pivoted body has as well
 MOVES_AFTER = ("semi-implicit-euler",)  # the place moves by the velocity of the end of the step
 
 
@@ -59,7 +61,7 @@ def limit_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
         found = [
             f"{law.text.format(number)}{bodies}"
             for law in laws()
-            if free or law.field == "angular_velocity"
+            if free or law.field in OF_TURNING
             for limit, number in _limits(law, runs, pivoted)
             if _holds(law, limit, by, runs, pivoted, plain)
         ]
@@ -81,7 +83,8 @@ def _laws() -> Iterator[_Law]:
 
 
 def _both_ways() -> Iterator[_Law]:
-    """Of one component, looked for where no limit on one side makes the runs."""
+    """Of one component, looked for where no limit on one side makes the runs; and of the pitch."""
+    yield _Law("orientation", _pitch_size, _within_pitch, PITCH)
     for (field, what, unit), axis in product(QUANTITIES, range(3)):
         text = f"{what} along {'xyz'[axis]} is held within {{}} {unit} either way"
         yield _Law(field, _size_along(axis), _within(axis), text)
@@ -117,6 +120,29 @@ def _within(axis: int) -> Callable[[Array, float], Array]:
     return hold
 
 
+def _pitch(q: Array) -> Array:
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    return np.asarray(np.arcsin(np.clip(2.0 * (w * y - x * z), -1.0, 1.0)))
+
+
+def _pitch_size(q: Array) -> Array:
+    return np.abs(_pitch(q))
+
+
+def _within_pitch(q: Array, most: float) -> Array:
+    """The same yaw and roll, with a pitch within the limit; as it is where it is within."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    pitch = np.clip(_pitch(q), -most, most)
+    axes = [np.zeros((*pitch.shape, 3)) for _ in range(3)]
+    for k, angle in enumerate((roll, pitch, yaw)):
+        axes[k][..., k] = angle
+    about_x, about_y, about_z = map(exp_quaternion, axes)
+    made = quaternion_product(about_z, quaternion_product(about_y, about_x))
+    return np.where((_pitch_size(q) > most)[..., None], made, q)
+
+
 def _shortened(values: Array, most: float) -> Array:
     with np.errstate(all="ignore"):
         return np.asarray(values * np.minimum(1.0, most / norm(values))[..., None])
@@ -125,7 +151,7 @@ def _shortened(values: Array, most: float) -> Array:
 def _shows(law: _Law, run: KeptRun, pivoted: Sequence[bool]) -> bool:
     """Whether a limit of this quantity would act: on a pivot, places follow from the turning."""
     on_pivot = run.system.load.pivot is not None
-    return on_pivot in pivoted and not (on_pivot and law.field != "angular_velocity")
+    return on_pivot in pivoted and not (on_pivot and law.field not in OF_TURNING)
 
 
 def _limits(
@@ -185,5 +211,5 @@ def _ends(law: _Law, limit: float, by: SchemeOf) -> Iterator[End]:
         return replace(end, position=before.position + h * end.linear_velocity)
 
     yield held
-    if by.scheme.name in MOVES_AFTER and law.field != "position":
+    if by.scheme.name in MOVES_AFTER and law.field not in ("position", "orientation"):
         yield moved

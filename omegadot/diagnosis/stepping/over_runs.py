@@ -35,6 +35,7 @@ from omegadot.diagnosis.stepping.slips.switched import switched
 from omegadot.diagnosis.stepping.turns.between_steps import between_steps
 from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.turns.mixed_turns import mixed_turns
+from omegadot.diagnosis.stepping.turns.short_turns import short_turns
 from omegadot.diagnosis.stepping.turns.solved import solved_causes
 from omegadot.diagnosis.stepping.turns.tolerances import tolerance_causes
 from omegadot.diagnosis.wording.kinds import either
@@ -79,6 +80,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
                 lambda: multistep_slips(integrator, runs),
                 lambda: commutator_slips(integrator, runs),
                 lambda: jacobian_slips(integrator, runs),
+                lambda: short_turns(runs),
             )
         )
         if found or len(failing) < SCENARIOS:

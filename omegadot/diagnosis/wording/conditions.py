@@ -19,6 +19,7 @@ from omegadot.reference_impl.system import Array, State, System
 # So many states on either side at least: the odds that chance sorts them are then below 1 in 20.
 LEAST = 3
 ODDS = 20  # as many times as conditions are tried must there be ways to sort the states
+LARGEST = float(np.finfo(float).max)
 CLEAR = 1e-3  # relative: a narrower gap between two sides is chance, where many numbers are tried
 
 
@@ -58,7 +59,8 @@ def only_where(parts: Sequence[Part], places: Sequence[NDArray[np.intp]] = ()) -
             below, above = float(np.max(a)), float(np.min(b))
             if term == "above" and not np.any(low):
                 continue  # what vanishes with it is no limit
-            if below < above and above - below > CLEAR * _spacing(values):
+            known = above < LARGEST and below > -LARGEST  # else a quotient by zero stands beyond it
+            if below < above and known and above - below > CLEAR * _spacing(values):
                 return f"{text} is {term} a limit between {limits(below, above, unit)}"
     return ""
 

@@ -106,6 +106,7 @@ def features_of(system: System, initial: State) -> Features:
         "the largest moment of inertia": (float(moments[-1]), "kg m^2"),
         "the least moment of inertia about what stays": (float(about[0]), "kg m^2"),
         "the largest moment of inertia about what stays": (float(about[-1]), "kg m^2"),
+        "the determinant of the inertia about what stays": (float(np.prod(about)), "kg^3 m^6"),
         "the largest number on the inertia's diagonal": (float(np.max(np.diag(tensor))), "kg m^2"),
         "the ratio of the largest moment of inertia to the least": (
             float(moments[-1] / moments[0]),

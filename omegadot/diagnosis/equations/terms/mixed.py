@@ -119,6 +119,11 @@ MIXED: tuple[Terms, ...] = (
         _mixture("the torque in world axes, taken to body axes,"),
     ),
     Terms(
+        "damping components",
+        lambda s, x, a: _components(s, _damping(s, x)),
+        _mixture("the damping torque"),
+    ),
+    Terms(
         "damping rows in world",
         lambda s, x, a: _world_rows(s, x, _damping(s, x)),
         by_rows("the damping in world axes"),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.reported.singles import fields_in_single, named_single
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
+from omegadot.gates.runs.trajectory import grain_of
 from omegadot.gates.steps.limits import Limit, Tolerated, extrapolated
 from omegadot.gates.steps.limits import limits as rates_at_no_step
 from omegadot.gates.steps.probe import Probe
@@ -137,11 +138,14 @@ def vanishing_steps(
 
 
 def _rounded(probe: Probe, stepped: State) -> str:
-    """A quantity of which every number after a step, but not before, has a few decimals."""
+    """A quantity of which every number after a step, but not before, is of a coarse grid."""
     for name, what in QUANTITIES.items():
         came, set_ = (getattr(states, name) for states in (stepped, probe.states))
         if not np.all(np.isfinite(came)) or not np.any(np.ptp(came, axis=(0, 1))):
             continue
+        grain = grain_of(np.unique(came))
+        if grain is not None and grain_of(np.unique(set_)) != grain:
+            return f"{what} is rounded to multiples of 2^{grain} in each step"
         digits = next((d for d in range(1, MOST_DECIMALS) if _has_decimals(came, d)), None)
         if digits is None or _has_decimals(set_, digits):
             continue
