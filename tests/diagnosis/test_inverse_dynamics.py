@@ -17,7 +17,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import EvaluationStates, random_acceleration, random_states
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.rotations import rotate
@@ -216,3 +216,27 @@ def test_a_triangle_of_the_inertia_is_named_on_free_and_pivoted_bodies() -> None
     assert all(texts == [text] for texts in found.values()), found
     free = named(upper, tuple(one for one in CASES if one.system.load.pivot is None))
     assert all(texts == [text.replace("of what stays, ", "")] for texts in free.values()), free
+
+
+@pytest.mark.parametrize(
+    ("other", "text"),
+    [
+        (lambda q, t, n: rotate(q, t + n), "in world axes, in place of body axes"),
+        (lambda q, t, n: -t - n, "with the wrong sign"),
+    ],
+    ids=["world", "sign"],
+)
+def test_another_acceleration_of_the_centre_of_mass_is_named(other: Any, text: str) -> None:
+    """In the sum of the turning and of r x m (a - g), as a pivot is done by the centre of mass."""
+
+    def more(s: System, x: State, a: Acceleration) -> Array:
+        if s.load.pivot is None:
+            return np.zeros_like(x.angular_velocity)
+        arm, w = lever(s), x.angular_velocity
+        tangential, inward = cross(a.angular, arm), cross(w, cross(w, arm))
+        off = other(x.orientation, tangential, inward) - tangential - inward
+        return np.asarray(cross(arm, float(s.body.mass) * off))
+
+    found = named(more, TOPS)
+    due = f"inverse dynamics have the acceleration of the centre of mass {text}"
+    assert all(texts == [due] for texts in found.values()), found

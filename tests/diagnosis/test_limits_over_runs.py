@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from test_over_runs import kept
 from wrong_equations import CASES
 
@@ -101,3 +102,26 @@ def test_a_body_that_comes_to_rest_is_not_held_at_zero() -> None:
     """Each of its numbers is at the least that it comes to, and stays there."""
     still = turning(lambda w: np.where(np.linalg.norm(w) < 2.1, 0.0 * w, w), lambda s: True)
     assert not any("is held" in text for text in causes(still))
+
+
+def test_a_pitch_that_is_held_is_named() -> None:
+    """Caught: "the run is wrong once", of each time that a body comes near the vertical."""
+    most = 0.6
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        v = v + h * motion.acceleration(q, v)
+        q = motion.retract(q, h * v)
+        turn = Rotation.from_quat(np.roll(q[-4:], -1))
+        yaw, pitch, roll = turn.as_euler("ZYX")
+        if abs(pitch) > most:
+            held = Rotation.from_euler("ZYX", [yaw, np.clip(pitch, -most, most), roll])
+            q = np.concatenate((q[:-4], np.roll(held.as_quat(), 1)))
+        return q, v
+
+    by = SchemeOf(SCHEMES[EULER], "com-world")
+    runs = [kept(one, step, h, 1) for one in CASES for h in (0.05, 0.02)]
+    runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
+    found = causes_over_runs(Integrator("own", EULER, dict.fromkeys(CHANNELS, 1)), runs)
+    assert found == ["the pitch of R_z(yaw) R_y(pitch) R_x(roll) is held within 0.6 rad either way"]

@@ -46,7 +46,9 @@ CLOCKS = {
     ),
     "last": (lambda t: np.append(t[:-1], t[-1] + 0.1), "the last time alone is off"),
     "missing": (lambda t: t[:-1], "the last sample is missing"),
+    "reversed": (lambda t: t[::-1], "the samples come in the opposite order"),
     "right": (lambda t: t * (1.0 + EPS), ""),
+    "running sum": (lambda t: t + EPS * t * np.arange(len(t)) / len(t) * 10.0, ""),
 }
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
@@ -177,6 +178,21 @@ def loads_by_an_attitude_without_its_sign(system: System, states: State) -> Acce
     return with_torque(system, states, wrong - right)
 
 
+def damping_of_a_copied_line(system: System, states: State) -> Acceleration:
+    """The third component is by the rate about the second axis."""
+    more = states.angular_velocity[:, 2] - states.angular_velocity[:, 1]
+    torque_z = float(system.load.damping) * more[:, None] * np.array([0.0, 0.0, 1.0])
+    return with_torque(system, states, torque_z)
+
+
+def world_torque_by_angles_in_another_order(system: System, states: State) -> Acceleration:
+    angles = Rotation.from_quat(np.roll(states.orientation, -1, axis=-1)).as_euler("ZYX")
+    turned = Rotation.from_euler("XYZ", angles[:, ::-1])
+    world = np.asarray(system.load.torque_world)
+    right = rotate_inverse(states.orientation, world)
+    return with_torque(system, states, turned.inv().apply(world) - right)
+
+
 def gyroscopic_of_world_omega(system: System, states: State) -> Acceleration:
     turned = rotate(states.orientation, states.angular_velocity)
     wrong = cross(turned, apply(moving_inertia(system), turned))
@@ -316,6 +332,15 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
         loads_by_an_attitude_without_its_sign,
         "in the torques of the loads, the quaternion's scalar is rebuilt from its vector part, "
         "without its sign",
+    ),
+    "copied-line": (
+        damping_of_a_copied_line,
+        "the damping torque is multiplied by the matrix ((1, 0, 0); (0, 1, 0); (0, 1, 0))",
+    ),
+    "angles": (
+        world_torque_by_angles_in_another_order,
+        "in the torque in world axes, the angles a, b, c of R_z(a) R_y(b) R_x(c) are put together "
+        "as R_x(c) R_y(b) R_z(a)",
     ),
     "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
     "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),

@@ -116,6 +116,16 @@ def test_a_bound_in_time_is_one_of_the_whole_run() -> None:
     assert trajectory.time_row(Sweep(4.0, 2, 1), np.array([0.0, 4.0, 8.0])).bound == 16 * EPS
 
 
+@pytest.mark.parametrize("step", [0.1, 0.03, 1.0 / 240.0])
+def test_a_clock_may_be_a_running_sum_of_the_step(step: float) -> None:
+    """Caught: a sound engine whose time grows by ``t += h``; and a clock that is off by more."""
+    sweep = Sweep(step, 5000, 1)
+    summed = np.concatenate(([0.0], np.cumsum(np.full(5000, step))))
+    assert float(np.max(np.abs(summed - sweep.times))) > 16 * EPS * summed[-1]
+    assert trajectory.time_row(sweep, summed).verdict == "pass"
+    assert trajectory.time_row(sweep, sweep.times * (1.0 + 1300 * EPS)).verdict == "fail"
+
+
 @pytest.mark.parametrize("count", [2, 4])
 def test_a_sample_too_few_or_too_many_fails(count: int) -> None:
     row = trajectory.time_row(Sweep(0.5, 2, 1), np.linspace(0.0, 1.0, count))

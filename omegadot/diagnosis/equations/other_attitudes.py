@@ -54,6 +54,12 @@ def other_attitudes() -> Iterator[tuple[str, Made]]:
         yield f"{where}, {text}", partial(_of_loads, change, loads)
 
 
+def in_loads(text: str) -> str:
+    """What becomes of the attitude in some loads, of a text that is of these; "" of any other."""
+    where, _, change = text.partition(", ")
+    return change if where in LOADS else ""
+
+
 def _of_state(change: Callable[[Array], Array], e: Evidence) -> Acceleration:
     other = replace(e.states, orientation=change(e.states.orientation))
     return forward_dynamics(e.system, place_on_pivot(e.system, other))

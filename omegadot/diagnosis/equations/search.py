@@ -16,6 +16,7 @@ from omegadot.diagnosis.equations.families import (
     fit,
 )
 from omegadot.diagnosis.equations.operators import changed_vectors, solved_apart
+from omegadot.diagnosis.equations.other_attitudes import in_loads
 from omegadot.diagnosis.equations.readings import READINGS
 from omegadot.diagnosis.equations.terms import FEW, MORE, MOST, Terms
 from omegadot.diagnosis.equations.tried import Tried, differs
@@ -58,10 +59,14 @@ def _with_terms(evidence: Evidence, kinds: Sequence[Terms]) -> list[Candidate]:
 
 
 def _readings(evidence: Evidence) -> list[Candidate]:
-    """Those that fit, and of several that make no difference here the plainest."""
-    made = [(one, one.accelerations(evidence)) for one in READINGS]
-    fits = [(one, found) for one, found in made if evidence.fits(found)]
-    return [Candidate(reading=one) for one, _ in fits[:1]]
+    """Those that fit, and of several that make no difference here the plainest.
+
+    In which loads an attitude is another is decided by scenarios with others of them.
+    """
+    fits = [one for one in READINGS if evidence.fits(one.accelerations(evidence))]
+    change = in_loads(fits[0].text) if fits else ""
+    alike = [one for one in fits[1:] if change and in_loads(one.text) == change]
+    return [Candidate(reading=one) for one in (*fits[:1], *alike)]
 
 
 def _fitted(evidence: Evidence, families: Sequence[Family]) -> list[Candidate]:

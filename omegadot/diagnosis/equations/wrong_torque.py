@@ -160,7 +160,10 @@ def _other_bodies(
 def _other_acceleration(
     system: System, states: State, requested: Acceleration
 ) -> dict[str, Callable[[], Array]]:
-    """The sum of what turns the body and of ``r x m (a - g)``, with another acceleration a."""
+    """The sum of what turns the body and of ``r x m (a - g)``, with another acceleration a.
+
+    One that lacks a part is another inertia in a term of the torque about the pivot.
+    """
     arm, w, q = lever(system), states.angular_velocity, states.orientation
     tangential, inward = cross(requested.angular, arm), cross(w, cross(w, arm))
     mass = float(system.body.mass)
@@ -174,7 +177,5 @@ def _other_acceleration(
     of = "inverse dynamics have the acceleration of the centre of mass"
     return {
         f"{of} in world axes, in place of body axes": by(rotate(q, tangential + inward)),
-        f"{of} without omega x (omega x r)": by(tangential),
-        f"{of} without omega-dot x r": by(inward),
         f"{of} with the wrong sign": by(-tangential - inward),
     }

@@ -9,6 +9,7 @@ import numpy as np
 from omegadot.diagnosis.reported.clock_roundings import roundings_of
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.gates.case import Sweep
+from omegadot.gates.runs.trajectory import clock_rounding
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
@@ -46,13 +47,15 @@ def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
     expected = sweep.times
     if len(time) != len(expected):
         return _samples(time, expected)
-    tolerance = 2.0 * eps * float(expected[-1])
+    tolerance = clock_rounding(sweep, eps)
     late = time - expected
     if not np.isfinite(time).all():
         return "times are reported that are not finite"
+    if len(time) > 2 and np.all(np.abs(time - expected[::-1]) <= tolerance):
+        return "the samples come in the opposite order, the last one first"
     if np.all(np.abs(late) <= tolerance):
         return ""
-    if np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
+    if abs(late[0]) > tolerance and np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
         size, when = abs(float(late[0])), "late" if late[0] > 0.0 else "early"
         steps = np.float64(size) / sweep.timestep if size < sweep.times[-1] else np.inf
         counted = f", {written(steps, 3)} steps" if np.isfinite(steps) else ""
@@ -124,8 +127,7 @@ def _rounded(time: Array, expected: Array) -> str:
 
 def _off(late: Array, sweep: Sweep) -> str:
     """Which times are off, where nothing more is known."""
-    eps = float(np.finfo(float).eps)
-    wrong = np.flatnonzero(np.abs(late) > 2.0 * eps * sweep.times[-1])
+    wrong = np.flatnonzero(np.abs(late) > clock_rounding(sweep))
     if len(wrong) == 1:
         place, which = int(wrong[0]), "the last time"
         if place < len(late) - 1:

@@ -31,6 +31,7 @@ FACTS = (
 SEEN = ("none is known", "the error of one step goes as")
 OF_ONE_RUN = (
     *("the last step is missing", "left over", "one before", "does not begin at", "its sign"),
+    "the last one first",
     "the same at every sample of a run",
 )
 AT_STEPS = ", at steps of"

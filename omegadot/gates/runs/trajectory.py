@@ -31,14 +31,23 @@ FEWEST_COARSE = 8  # by chance one in 4^8 = 65 536
 def time_row(sweep: Sweep, times: Array, eps: float = EPS) -> Row:
     """Whether the samples stand at the engine's own steps: n times the step, none missing.
 
-    The step is rounded to the engine's numbers, and so is its product with n: an eps of the time.
+    See `clock_rounding` for what a clock may be off by.
     """
     expected = sweep.times
     if len(times) != len(expected):
         note = f"{len(times)} samples came back, {len(expected)} were requested"
         return Row(GATE, "time", "sample_times", float("inf"), "s", 0.0, "fail", note)
     late = float(np.max(np.abs(times - expected)))
-    return within(GATE, "time", "sample_times", late, "s", 2 * eps * float(expected[-1]))
+    return within(GATE, "time", "sample_times", late, "s", clock_rounding(sweep, eps))
+
+
+def clock_rounding(sweep: Sweep, eps: float = EPS) -> float:
+    """s, what rounding may make of the last time T of a run of n steps: ``max(2, 1 + n/4) eps T``.
+
+    A clock that is n times the step rounds the step and the product. One that is a running sum
+    rounds each time ``k h`` by half an eps of it: ``sum (eps/2) k h = (n + 1) eps T / 4``.
+    """
+    return max(2.0, 1.0 + 0.25 * sweep.steps) * eps * float(sweep.times[-1])
 
 
 def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:

@@ -34,6 +34,11 @@ def _lead(states: State) -> tuple[int, ...]:
     return states.angular_velocity.shape[:-1]
 
 
+def _own(state: State) -> State:
+    """A copy of one state: an adapter may step in the arrays that it is given."""
+    return State(*map(np.array, vars(state).values()))
+
+
 def _load(adapter: Adapter, request: Request) -> Any:
     """Load a system; the description that comes back may refers to this very system."""
     adapter.load(system_from(request["system"]))
@@ -78,9 +83,9 @@ def _runs_of(adapter: Adapter, request: Request) -> Callable[..., Trajectory]:
 def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
     initial, run = State(**request["initial"]), _runs_of(adapter, request)
     step = (request["integrator"], request["timestep"])
-    run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
+    run(_own(initial), *step, 1, 1)  # a warm-up, so that first-call costs are not counted
     started = time.perf_counter()
-    trajectory = run(initial, *step, request["steps"], request["every"])
+    trajectory = run(_own(initial), *step, request["steps"], request["every"])
     whole = time.perf_counter() - started
     checked = checked_trajectory(trajectory)
     return checked, checked_seconds(checked.seconds, whole) / request["steps"]
@@ -116,7 +121,7 @@ def _first_steps(adapter: Adapter, request: Request) -> Any:
     run = _runs_of(adapter, request)
 
     def end(start: State, timestep: float) -> State:
-        found = checked_trajectory(run(start, integrator, timestep, 1, 1))
+        found = checked_trajectory(run(_own(start), integrator, timestep, 1, 1))
         if len(found.time) < 2 and abs(found.time[-1]) < abs(found.time[-1] - timestep):
             raise AnswerError("run() of one step has the start alone; answer with its end as well")
         return found.state[-1]
