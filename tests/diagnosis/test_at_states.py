@@ -133,6 +133,15 @@ def test_a_ratio_that_few_states_have_sorts_nothing() -> None:
     assert only_where([(CASES[0].system, states, sound)]) == ""
 
 
+def test_a_quotient_by_zero_is_no_limit() -> None:
+    """Caught: "below a limit between 0 and 1.8e308", of states of which all sound ones turn so."""
+    states = random_states(CASES[0], 200, [1])[40:100]
+    sound = np.arange(60) % 3 == 0
+    states.angular_velocity[sound, 1] = 0.0
+    states.angular_velocity[~sound, 0] = 0.0
+    assert "over" not in only_where([(CASES[0].system, states, sound)])
+
+
 @pytest.mark.parametrize("first", [20, 45])
 def test_the_place_in_a_request_from_which_on_omega_dot_is_zero_is_named(first: int) -> None:
     def found(system: System, states: State) -> Acceleration:

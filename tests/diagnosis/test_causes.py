@@ -121,6 +121,23 @@ def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
     assert found == "the linear velocity is held below 0.5 m/s"
 
 
+def test_an_omega_in_fixed_point_is_one_of_whole_multiples() -> None:
+    """Caught: "rounded to 8 decimals", which every multiple of 1/256 is."""
+    one = CASES[1]
+    states = random_states(one, 12, [1])
+    rate = 4.0 * float(np.max(np.abs(states.angular_velocity))) + 1.0
+    steps = np.full((12, 1), DOUBLE.radians / rate) / 2.0 ** np.arange(DOUBLE.count)
+
+    def end(k: int, h: float) -> State:
+        scheme = SCHEMES["semi-implicit-euler"]
+        after = step_body(scheme, one.system, states[k], h, 1, 1)[1][-1]
+        return replace(after, angular_velocity=np.round(256.0 * after.angular_velocity) / 256.0)
+
+    stepped = stack([stack([end(k, h) for h in steps[k]]) for k in range(12)])
+    found = vanishing_steps(one.system, Probe(states, steps), stepped).rounded
+    assert found == "omega is rounded to multiples of 2^-8 in each step"
+
+
 def test_a_trace_has_causes() -> None:
     one = CASES[5]
     wrong = replace(one.system, load=replace(one.system.load, torque_body=np.zeros(3)))

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from wrong_equations import CASES
 
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.misreadings import misreadings
 from omegadot.diagnosis.reported.clock import clock_cause, clock_of_runs
 from omegadot.diagnosis.reported.of_steps import ways_of_steps
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
@@ -26,7 +28,7 @@ from omegadot.gates.states.equation import random_states
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.one_body.body_motion import attitude_motion
-from omegadot.reference_impl.rotations import quaternion_product, rotation_matrix
+from omegadot.reference_impl.rotations import quaternion_product, rotate, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State
@@ -50,6 +52,21 @@ CLOCKS = {
     "right": (lambda t: t * (1.0 + EPS), ""),
     "running sum": (lambda t: t + EPS * t * np.arange(len(t)) / len(t) * 10.0, ""),
 }
+
+
+@pytest.mark.parametrize(
+    ("turned", "phrase"),
+    [(False, "not turned into the world: it is off by c - R c"), (True, "in it once too often")],
+)
+def test_a_centre_of_mass_that_is_added_wrongly_is_a_way_to_misread_a_place(
+    turned: bool, phrase: str
+) -> None:
+    """Of a place x: x - R c + c, and x + R c."""
+    states, c = random_states(CASES[0], 8, [1]), CASES[0].system.body.center_of_mass
+    at = rotate(states.orientation, c)
+    reported = replace(states, position=states.position + (at if turned else c - at))
+    (way,) = [one for one in misreadings(CASES[0].system) if phrase in one.statement]
+    assert np.allclose(way.right(reported).position, states.position, rtol=0.0, atol=1e-14)
 
 
 @pytest.mark.parametrize("name", CLOCKS)
