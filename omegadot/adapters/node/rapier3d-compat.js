@@ -25,6 +25,7 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'full_inertia', 'offset_com'],
     integrators: [{
       name: 'step',
+      scheme: 'semi-implicit-euler-rescaled-momentum-four-substeps',
       order: 1,
       note: 'World.step, in numSolverIterations = 4 substeps: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
     }],
