@@ -62,12 +62,10 @@ def _fields_in(coordinates: Coordinates) -> dict[str, Any]:
 
 def _motion(system: System, acceleration: Velocity, fields: dict[str, Any]) -> Motion:
     jacobian = _jacobian_by_all if fields is SPATIAL else _jacobian_by_omega
-    inertia = moving_inertia(system)
     return Motion(
         acceleration=acceleration,
         jacobian=partial(jacobian, acceleration),
-        momentum=times_symmetric(inertia),
-        from_momentum=times_symmetric(inverse(inertia)),
+        momentum=times_symmetric(moving_inertia(system)),
         **fields,
     )
 

@@ -47,7 +47,7 @@ class Motion:
     accelerations depend on no others. size: (..., 1), the distance for differences where v itself
     gives none. None: by differences.
     turned_by: of (turn, q, u): `retract` with every quaternion moved by ``turn(quaternion, r)``.
-    momentum: of the velocities of `spin`: ``I ω``, (..., m), and from_momentum its inverse.
+    momentum: of the velocities of `spin`: ``I ω``, (..., m).
     spin: the velocities, of one unit, by which an implicit step is judged to have settled, and
     which `turned_by` turns.
     """
@@ -62,7 +62,6 @@ class Motion:
     jacobian: Callable[[Array, Array, Array | None], tuple[Array, Array]] | None = None
     turned_by: Callable[[Turn, Array, Array], Array] | None = None
     momentum: Callable[[Array], Array] = _same
-    from_momentum: Callable[[Array], Array] = _same
     spin: slice = field(default_factory=lambda: slice(None))
 
 
