@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.components import Numbers, constants, one_in_components
 from omegadot.reference_impl.arithmetic.precision import like, to_extended
 from omegadot.reference_impl.system import Array
 
@@ -14,6 +17,18 @@ def apply(matrix: Array, vector: Array) -> Array:
     """``matrix @ vector``: (..., 3, 3) and (..., 3) to (..., 3), any leading axes."""
     product: Array = (matrix @ vector[..., None])[..., 0]
     return product
+
+
+def times_symmetric(matrix: Array) -> Callable[[Array], Array]:
+    """`apply` of one symmetric matrix (..., 3, 3), in components: a function of (..., 3)."""
+    xx, xy, xz, _, yy, yz, _, _, zz = constants(matrix)
+
+    @one_in_components
+    def times(vector: Numbers) -> Numbers:
+        x, y, z = vector
+        return xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
+
+    return times
 
 
 def inverse(matrix: Array) -> Array:

@@ -17,9 +17,10 @@ from omegadot.commands.schemes.print_schemes import markdown_of
 from omegadot.diagnosis.scheme_study import fingerprint
 from omegadot.diagnosis.scheme_study.naming import Naming, name_schemes
 from omegadot.diagnosis.scheme_study.orders import Observed, Point, observe
-from omegadot.diagnosis.scheme_study.probes import PROBES
+from omegadot.diagnosis.scheme_study.probes import PROBES, in_precision
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, study_probe
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.system import State
 
 PAGE = Path(__file__).parents[2] / "docs" / "schemes.md"
@@ -134,6 +135,33 @@ def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.Monke
             attitude = found.defects["attitude"].observed.order
             own = OWN_DEFECT.get(name, SCHEMES[name].orders["attitude"] + 1)
             assert attitude == pytest.approx(own, abs=0.15)
+
+
+def test_single_precision_has_its_own_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Caught: an engine in single precision that is told that it steps nothing known."""
+    monkeypatch.setattr(fingerprint, "FOLLOWING", ((0.02, 60, 20),))
+    name, reference = "semi-implicit-euler-rescaled-momentum", ReferenceAdapter()
+    integrator = next(i for i in reference.description.integrators if i.name == name)
+    double, single = PROBES[0], in_precision(PROBES[0], "float32")
+    reference.load(double.system)
+
+    def rounded(state: State) -> State:
+        return State(*(field.astype(np.float32).astype(float) for field in vars(state).values()))
+
+    def step(initial: State, timestep: float, steps: int, every: int) -> State:
+        kept = [rounded(initial)]
+        now = kept[0]
+        for n in range(1, steps + 1):
+            now = rounded(reference.run(now, name, timestep, 1, 1).state[-1])
+            if n % every == 0 or n == steps:
+                kept.append(now)
+        return stack(kept)
+
+    found = study_probe(single, integrator, step)
+    assert found.as_declared is True
+    assert IntegratorStudy(name, {single.kind: found}).departures == []
+    assert EXPLICIT not in {match.scheme for match in found.matches}
+    assert fingerprint.fingerprint(double, step) == []
 
 
 def test_a_wrong_declaration_is_found_out(tmp_path: Path) -> None:

@@ -45,6 +45,7 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'full_inertia', 'offset_com'],
     integrators: [{
       name: 'step',
+      scheme: setup === 'physics' ? 'semi-implicit-euler-rescaled-momentum' : null, // else damped
       order: 1,
       note: 'JoltInterface.Step: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
     }],

@@ -25,8 +25,9 @@ function description(api, setup) {
     features: ['free', 'gravity', 'torque', 'full_inertia', 'offset_com'],
     integrators: [{
       name: 'step',
+      scheme: 'semi-implicit-euler-rescaled-momentum-four-substeps',
       order: 1,
-      note: 'World.step, in numSolverIterations = 4 substeps: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
+      note: 'World.step, in numSolverIterations = 4 substeps: w = w0 + h a, L = I w, w1 = I^-1 (L - h w x L) |L| / |L - h w x L|, q1 = q + h/2 (0, w1) q, made unit; a = I^-1 t stays in world axes',
     }],
     conventions: [
       'quaternions are (x, y, z, w), world-from-body',

@@ -3,7 +3,8 @@
 //
 // ENGINE.js exports `open(folder)`, which gives the engine's API, and makes of it
 //   description(api, setup)            what docs/worker-protocol.md requires of `describe`, but for the
-//                                      version; an integrator has one order in all channels
+//                                      version; an integrator has one order in all channels, and
+//                                      a scheme where the reference has it
 //   refused(body)                      why it cannot take a body, or ''
 //   World(api, setup, body, gravity)   a world with the body, anew for each run:
 //     put(state), state()              a state is { q, w, p, v }, all in world axes, p and v of the
@@ -108,9 +109,9 @@ class Server {
   }
 }
 
-function withOrders({ name, order, note }) {
+function withOrders({ name, scheme = null, order, note }) {
   const orders = Object.fromEntries(CHANNELS.map((channel) => [channel, order]));
-  return { name, scheme: null, orders, note };
+  return { name, scheme, orders, note };
 }
 
 const NONE = { q: Array(4).fill(NaN), w: Array(3).fill(NaN), p: Array(3).fill(NaN), v: Array(3).fill(NaN) };

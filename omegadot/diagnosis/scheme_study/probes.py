@@ -7,12 +7,13 @@ symmetry. Steps are reported by the angle that the body turns in one, ``|omega_0
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
 from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.solutions.growth import growth_along
@@ -22,12 +23,16 @@ from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """A system with a start. kind: what it stands for, "free", "damped", "pivoted" or both."""
+    """A system with a start. kind: what it stands for, "free", "damped", "pivoted" or both.
+
+    precision: of the engine that is studied on it, by which rounding is bounded.
+    """
 
     kind: str
     shows: str
     system: System
     initial: State
+    precision: str = "float64"
 
     def timestep(self, angle: float) -> float:
         """The step in s in which the body turns by `angle` rad at its initial rate."""
@@ -89,6 +94,12 @@ PROBES = (
 )
 
 
+@cache
+def in_precision(probe: Probe, precision: str) -> Probe:
+    """The same probe for an engine that computes in "float64" or "float32"."""
+    return probe if precision == probe.precision else replace(probe, precision=precision)
+
+
 @dataclass(frozen=True, eq=False)
 class Truth:
     """The exact trajectory of a probe at some times, with the growth of rounding along it."""
@@ -103,5 +114,5 @@ def truth_of(probe: Probe, times: tuple[float, ...]) -> Truth:
     """The exact states of a probe at `times`, the first of them zero."""
     moments = np.array(times)
     state = solve_series(probe.system, probe.initial, moments)
-    yardstick = Yardstick(probe.system, moments, state)
+    yardstick = Yardstick(probe.system, moments, state).with_eps(eps_of(probe.precision))
     return Truth(state, yardstick, growth_along(probe.system, moments, state, yardstick.rate))

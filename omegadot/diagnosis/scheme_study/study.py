@@ -12,7 +12,7 @@ from omegadot.diagnosis.scheme_study.fingerprint import Match, fingerprint
 from omegadot.diagnosis.scheme_study.naming import Naming, name_schemes
 from omegadot.diagnosis.scheme_study.one_step import Defect, defects
 from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
-from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
+from omegadot.diagnosis.scheme_study.probes import PROBES, Probe, in_precision
 from omegadot.diagnosis.scheme_study.subject import (
     NoAnswerError,
     Stepper,
@@ -158,7 +158,7 @@ def study_engine(
         description = description_of(started.result)
         names = [i.name for i in integrators_chosen(choice, description)]
         found: dict[str, dict[str, ProbeStudy]] = {name: {} for name in names}
-        for probe in PROBES:
+        for probe in (in_precision(one, description.precision) for one in PROBES):
             for name in names:
                 if not halt.is_set():
                     late = any(p.answer.outcome == "timeout" for p in found[name].values())

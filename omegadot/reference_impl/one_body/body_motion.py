@@ -24,7 +24,7 @@ from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.one_body.body_configurations import ATTITUDE, SPATIAL, WORLD
 from omegadot.reference_impl.schemes.jacobian import by_differences
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
-from omegadot.reference_impl.symmetric import inverse
+from omegadot.reference_impl.symmetric import inverse, times_symmetric
 from omegadot.reference_impl.system import Array, System
 
 
@@ -33,13 +33,13 @@ def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motio
     """One body under its loads, in these coordinates."""
     if system.load.pivot is not None:
         return attitude_motion(system)
-    return _motion(_free_acceleration(system, coordinates), _fields_in(coordinates))
+    return _motion(system, _free_acceleration(system, coordinates), _fields_in(coordinates))
 
 
 @formed_once
 def attitude_motion(system: System) -> Motion:
     """The turning of a body alone: q is the quaternion, v is ω. A pivoted body has no more."""
-    return _motion(in_components(_angular(system)), ATTITUDE)
+    return _motion(system, in_components(_angular(system)), ATTITUDE)
 
 
 def motion_over(system: System, coordinates: Coordinates, acceleration: AccelerationOf) -> Motion:
@@ -52,16 +52,22 @@ def motion_over(system: System, coordinates: Coordinates, acceleration: Accelera
         state = from_coordinates(system, q, v, coordinates)
         return acceleration_in(system, state, acceleration(state), coordinates)
 
-    return _motion(rate, ATTITUDE if system.load.pivot is not None else _fields_in(coordinates))
+    pivoted = system.load.pivot is not None
+    return _motion(system, rate, ATTITUDE if pivoted else _fields_in(coordinates))
 
 
 def _fields_in(coordinates: Coordinates) -> dict[str, Any]:
     return SPATIAL if coordinates == "body-spatial" else WORLD
 
 
-def _motion(acceleration: Velocity, fields: dict[str, Any]) -> Motion:
+def _motion(system: System, acceleration: Velocity, fields: dict[str, Any]) -> Motion:
     jacobian = _jacobian_by_all if fields is SPATIAL else _jacobian_by_omega
-    return Motion(acceleration=acceleration, jacobian=partial(jacobian, acceleration), **fields)
+    return Motion(
+        acceleration=acceleration,
+        jacobian=partial(jacobian, acceleration),
+        momentum=times_symmetric(moving_inertia(system)),
+        **fields,
+    )
 
 
 def _jacobian_by_omega(

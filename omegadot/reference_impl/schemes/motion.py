@@ -47,6 +47,7 @@ class Motion:
     accelerations depend on no others. size: (..., 1), the distance for differences where v itself
     gives none. None: by differences.
     turned_by: of (turn, q, u): `retract` with every quaternion moved by ``turn(quaternion, r)``.
+    momentum: of the velocities of `spin`: ``I ω``, (..., m).
     spin: the velocities, of one unit, by which an implicit step is judged to have settled, and
     which `turned_by` turns.
     """
@@ -60,6 +61,7 @@ class Motion:
     normalize: Callable[[Array], Array] = _same
     jacobian: Callable[[Array, Array, Array | None], tuple[Array, Array]] | None = None
     turned_by: Callable[[Turn, Array, Array], Array] | None = None
+    momentum: Callable[[Array], Array] = _same
     spin: slice = field(default_factory=lambda: slice(None))
 
 
