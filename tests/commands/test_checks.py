@@ -10,6 +10,8 @@ from command_line import FAULTY, QUICK, WRONG, omegadot, quick_scenario
 
 from omegadot.commands.check.check import arguments_of
 from omegadot.commands.check.check_result import CheckResult
+from omegadot.commands.check.compare import baseline_checks
+from omegadot.commands.check.coverage import coverage
 from omegadot.commands.check.judge import CAUSE, failure
 from omegadot.commands.check.print_checks import print_checks
 from omegadot.commands.check.result import (
@@ -20,7 +22,6 @@ from omegadot.commands.check.result import (
     Subject,
     Tally,
     checks_of,
-    coverage,
 )
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.shrink import Failing
@@ -67,6 +68,28 @@ def test_coverage_counts_scenarios_gates_and_checks() -> None:
         "invariants and trajectory in each of 6 runs"
     ]
     assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
+
+
+def test_coverage_counts_baselines_where_they_are() -> None:
+    """Caught: "scheme and baseline in each of 6 runs" of baselines at the finest step alone."""
+    cases = [case_of(load_builtin(name), ()) for name in ("t-handle", "sphere")]
+    checks = checks_of([MUJOCO], cases)
+    kept = list(baseline_checks(MUJOCO, cases, None))
+    runs = "scheme, invariants and trajectory in each of 6 runs"
+    assert coverage([MUJOCO], [*checks, *kept]) == [
+        "mujoco 4.0.0 (RK4): 26 checks, model, equation and baseline on each of 2 scenarios, and "
+        f"{runs}, and baseline in 2 of these, at the finest step"
+    ]
+    named = [check for check in kept if check.scenario == "sphere"]  # the other one was drawn
+    (drawn,) = coverage([MUJOCO], [*checks, *named])
+    assert "model and equation on each of 2 scenarios, and baseline on 1 of these, " in drawn
+    longer = [replace(check, timestep=check.timestep and 2 * check.timestep) for check in named]
+    (other,) = coverage([MUJOCO], [*checks, *longer])  # not the finest; perhaps of no run now
+    assert "finest" not in other
+    exact = replace(MUJOCO, by_accuracy={"RK4": 1e-13})
+    kept = list(baseline_checks(exact, cases, None))
+    (by_accuracy,) = coverage([exact], [*checks_of([exact], cases), *kept])
+    assert by_accuracy.endswith("and baseline in 2 of these, at the finest accuracy")
 
 
 def test_a_registry_survives_the_way_to_another_process() -> None:

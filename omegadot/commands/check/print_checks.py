@@ -14,10 +14,11 @@ from rich.text import Text
 
 from omegadot.commands import options
 from omegadot.commands.check.check_result import CHECKING, EXPLAINING, CheckResult
+from omegadot.commands.check.coverage import coverage
 from omegadot.commands.check.explained import explained
 from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.print_failing import print_failing
-from omegadot.commands.check.result import Check, Result, Verdict, coverage
+from omegadot.commands.check.result import Check, Result, Verdict
 from omegadot.commands.streams import on_one_line
 from omegadot.reports.text.numbers import first, times
 
