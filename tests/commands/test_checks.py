@@ -12,7 +12,7 @@ from omegadot.commands.check.check import arguments_of
 from omegadot.commands.check.check_result import CheckResult
 from omegadot.commands.check.compare import baseline_checks
 from omegadot.commands.check.coverage import coverage
-from omegadot.commands.check.judge import CAUSE, failure
+from omegadot.commands.check.judge import CAUSE, failure, to_read
 from omegadot.commands.check.print_checks import print_checks
 from omegadot.commands.check.result import (
     REGISTRY,
@@ -108,6 +108,21 @@ def test_a_failure_names_the_worst_row_its_bound_and_the_others() -> None:
     assert "omega fails as well" in text
     assert "position" not in text
     assert text.endswith("Likely cause: the step is too long.")
+
+
+def test_a_cause_that_the_message_states_is_not_stated_again(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Caught: "steps are 1e-5 % too long; ... Likely cause: steps are 1e-5 % too long."."""
+    note = "steps are 1e-5 % too long"
+    row = Row("scheme", "omega", "rate_at_no_step", 1e-7, "1", 1e-12, "fail", note)
+    twice = failure([row, replace(row, channel="attitude", note="")], f"{note}.")
+    assert twice == f"omega: {note}; attitude fails as well. {CAUSE}{note}."
+    assert to_read(twice) == f"omega: {note}; attitude fails as well."
+    print_checks(CheckResult({Check("toy", "s", "scheme", "a", 0.1): Result("fail", twice)}, ()))
+    assert capsys.readouterr().out.count(note) == 1
+    for kept in (f"omega: {note} by half. {CAUSE}{note}.", f"omega: off. {CAUSE}{note}.", "off."):
+        assert to_read(kept) == kept  # it says less, something else, or nothing
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
