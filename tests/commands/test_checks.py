@@ -4,6 +4,8 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from command_line import FAULTY, QUICK, WRONG, omegadot, quick_scenario
@@ -14,6 +16,7 @@ from omegadot.commands.check.compare import baseline_checks
 from omegadot.commands.check.coverage import coverage
 from omegadot.commands.check.judge import CAUSE, failure, to_read
 from omegadot.commands.check.print_checks import print_checks
+from omegadot.commands.check.pytest_items import CheckFailedError, CheckItem
 from omegadot.commands.check.result import (
     REGISTRY,
     Check,
@@ -121,6 +124,11 @@ def test_a_cause_that_the_message_states_is_not_stated_again(
     assert to_read(twice) == f"omega: {note}; attitude fails as well."
     print_checks(CheckResult({Check("toy", "s", "scheme", "a", 0.1): Result("fail", twice)}, ()))
     assert capsys.readouterr().out.count(note) == 1
+    suite = SimpleNamespace(result_of=lambda _: Result("fail", twice))
+    item = SimpleNamespace(check=Check("toy", "s", "model"), suite=suite, user_properties=[])
+    with pytest.raises(CheckFailedError) as caught:
+        CheckItem.runtest(cast(CheckItem, item))
+    assert str(caught.value).count(note) == 1
     for kept in (f"omega: {note} by half. {CAUSE}{note}.", f"omega: off. {CAUSE}{note}.", "off."):
         assert to_read(kept) == kept  # it says less, something else, or nothing
 
