@@ -137,7 +137,7 @@ def test_a_change_names_figure_size_versions_and_meaning() -> None:
     [
         (moved("lie-rk4", attitude=1e-3), "declared lie-rk4-naive then, lie-rk4 now"),
         (moved(attitude=1e-3), "the update of the attitude changed"),
-        (moved(omega=1.1), "a default such as"),
+        (moved(omega=1.2), "another scheme of the same order, or a default changed"),
         (moved(omega=math.nan), "diverges"),
     ],
 )
@@ -146,6 +146,25 @@ def test_what_a_change_probably_means(now: ScenarioFigures, stated: str) -> None
     found = changes(was, now.runs[RUN])
     assert stated in meaning(was, now.runs[RUN], found, same_version=False)
     assert "the version is the same" in meaning(was, now.runs[RUN], found, same_version=True)
+
+
+@pytest.mark.parametrize(
+    ("factor", "stated"),
+    [(0.9948, "0.52 % less"), (1.05, "5 % more"), (1.25, "1.25 times"), (0.5, "2 times less")],
+)
+def test_a_small_change_is_stated_in_percent(factor: float, stated: str) -> None:
+    """Caught: "0.000577 to 0.000574 (1 times less"."""
+    found = compare(CHECK, {"sphere": STORED}, moved(omega=factor), "4.0.0")
+    assert f" ({stated}; rounding allows " in found.message
+
+
+def test_what_a_gate_explains_is_not_guessed_besides() -> None:
+    now = moved(omega=1.2)
+    guessed = compare(CHECK, {"sphere": STORED}, now, "4.0.0")
+    assert "Probably it is stepped by another scheme" in guessed.message
+    known = compare(CHECK, {"sphere": STORED}, now, "4.0.0", ["scheme"])
+    assert "Probably" not in known.message
+    assert "). The scheme gate fails here too" in known.message
 
 
 def test_figures_must_be_there_on_both_sides() -> None:

@@ -1,5 +1,7 @@
 """What the first screen of `omegadot check` states where no cause is named."""
 
+import re
+
 import pytest
 
 from omegadot.commands.check.check_result import CheckResult
@@ -75,9 +77,20 @@ def test_a_cause_of_other_scenarios_is_the_same_cause() -> None:
     assert len(explained({**here, **besides}, [])) == 3
 
 
-def test_the_figures_of_a_cell_are_said_to_be_checks(capsys: pytest.CaptureFixture[str]) -> None:
-    """Caught: "fail 2/3" below "1 scenario", of which nobody knows what is counted."""
+def test_a_cell_counts_every_verdict(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Caught: "pass 1/3" of a sound run, read as two failures; and "2 fail, 1 p…"."""
     print_checks(CheckResult(runs("s", 2, f"off. {CAUSE}no spin."), ()))
-    assert "fail 2/3: 2 of the 3 checks of that row and gate\n" in capsys.readouterr().out
+    assert re.search(r"^s +2 fail, 1 pass *$", capsys.readouterr().out, re.MULTILINE)
+    sound = {
+        check: result if result.verdict == "pass" else Result("skip", "not judged: at rest")
+        for check, result in runs("s", 2, "off.").items()
+    }
+    print_checks(CheckResult(sound, ()))
+    assert re.search(r"^s +1 pass, 2 skip *$", capsys.readouterr().out, re.MULTILINE)
     print_checks(CheckResult(runs("s", 3, f"off. {CAUSE}no spin."), ()))
-    assert "of that row" not in capsys.readouterr().out
+    assert re.search(r"^s +fail *$", capsys.readouterr().out, re.MULTILINE)
+    monkeypatch.setattr("omegadot.commands.check.print_checks.WIDTH_WHEN_PIPED", 20)
+    print_checks(CheckResult(sound, ()))
+    assert re.search(r"^ +2 skip *$", capsys.readouterr().out, re.MULTILINE)

@@ -4,14 +4,19 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from command_line import FAULTY, QUICK, WRONG, omegadot, quick_scenario
 
 from omegadot.commands.check.check import arguments_of
 from omegadot.commands.check.check_result import CheckResult
-from omegadot.commands.check.judge import CAUSE, failure
+from omegadot.commands.check.compare import baseline_checks
+from omegadot.commands.check.coverage import coverage
+from omegadot.commands.check.judge import CAUSE, failure, to_read
 from omegadot.commands.check.print_checks import print_checks
+from omegadot.commands.check.pytest_items import CheckFailedError, CheckItem
 from omegadot.commands.check.result import (
     REGISTRY,
     Check,
@@ -20,7 +25,6 @@ from omegadot.commands.check.result import (
     Subject,
     Tally,
     checks_of,
-    coverage,
 )
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.shrink import Failing
@@ -69,6 +73,28 @@ def test_coverage_counts_scenarios_gates_and_checks() -> None:
     assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
 
 
+def test_coverage_counts_baselines_where_they_are() -> None:
+    """Caught: "scheme and baseline in each of 6 runs" of baselines at the finest step alone."""
+    cases = [case_of(load_builtin(name), ()) for name in ("t-handle", "sphere")]
+    checks = checks_of([MUJOCO], cases)
+    kept = list(baseline_checks(MUJOCO, cases, None))
+    runs = "scheme, invariants and trajectory in each of 6 runs"
+    assert coverage([MUJOCO], [*checks, *kept]) == [
+        "mujoco 4.0.0 (RK4): 26 checks, model, equation and baseline on each of 2 scenarios, and "
+        f"{runs}, and baseline in 2 of these, at the finest step"
+    ]
+    named = [check for check in kept if check.scenario == "sphere"]  # the other one was drawn
+    (drawn,) = coverage([MUJOCO], [*checks, *named])
+    assert "model and equation on each of 2 scenarios, and baseline on 1 of these, " in drawn
+    longer = [replace(check, timestep=check.timestep and 2 * check.timestep) for check in named]
+    (other,) = coverage([MUJOCO], [*checks, *longer])  # not the finest; perhaps of no run now
+    assert "finest" not in other
+    exact = replace(MUJOCO, by_accuracy={"RK4": 1e-13})
+    kept = list(baseline_checks(exact, cases, None))
+    (by_accuracy,) = coverage([exact], [*checks_of([exact], cases), *kept])
+    assert by_accuracy.endswith("and baseline in 2 of these, at the finest accuracy")
+
+
 def test_a_registry_survives_the_way_to_another_process() -> None:
     registry = Registry((MUJOCO,), {"dart": ("not-installed", "No module named 'dartpy'")})
     assert REGISTRY.validate_json(REGISTRY.dump_json(registry)) == registry
@@ -85,6 +111,26 @@ def test_a_failure_names_the_worst_row_its_bound_and_the_others() -> None:
     assert "omega fails as well" in text
     assert "position" not in text
     assert text.endswith("Likely cause: the step is too long.")
+
+
+def test_a_cause_that_the_message_states_is_not_stated_again(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Caught: "steps are 1e-5 % too long; ... Likely cause: steps are 1e-5 % too long."."""
+    note = "steps are 1e-5 % too long"
+    row = Row("scheme", "omega", "rate_at_no_step", 1e-7, "1", 1e-12, "fail", note)
+    twice = failure([row, replace(row, channel="attitude", note="")], f"{note}.")
+    assert twice == f"omega: {note}; attitude fails as well. {CAUSE}{note}."
+    assert to_read(twice) == f"omega: {note}; attitude fails as well."
+    print_checks(CheckResult({Check("toy", "s", "scheme", "a", 0.1): Result("fail", twice)}, ()))
+    assert capsys.readouterr().out.count(note) == 1
+    suite = SimpleNamespace(result_of=lambda _: Result("fail", twice))
+    item = SimpleNamespace(check=Check("toy", "s", "model"), suite=suite, user_properties=[])
+    with pytest.raises(CheckFailedError) as caught:
+        CheckItem.runtest(cast(CheckItem, item))
+    assert str(caught.value).count(note) == 1
+    for kept in (f"omega: {note} by half. {CAUSE}{note}.", f"omega: off. {CAUSE}{note}.", "off."):
+        assert to_read(kept) == kept  # it says less, something else, or nothing
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])

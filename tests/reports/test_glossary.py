@@ -13,6 +13,7 @@ DOCUMENT = Path(__file__).parents[2] / "docs" / "glossary.md"
 REQUIRED = {
     *("residual", "floor", "round-off bound", "explained", "consistent"),
     *("scheme", "companion", "order", "defect"),
+    "whole inertia",  # which causes name
 }
 
 

@@ -166,7 +166,11 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": (replace(EULER, finest_accuracy=2),)}, "is 2; give a number from 0 to 1"),
         ({"integrators": (replace(EULER, finest_accuracy="x"),)}, "the finest accuracy of euler"),
         ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
-        ({"integrators": (replace(EULER, scheme="mine"),)}, "'mine', which the reference lacks"),
+        ({"integrators": (replace(EULER, scheme="mine"),)}, "which the reference lacks; give None"),
+        (
+            {"integrators": (replace(EULER, scheme="midpoint"),)},
+            "which the reference lacks; it is known to omegadot score only; declare None",
+        ),
         (
             {"integrators": (replace(EULER, knob="accuracy"),)},
             "of an error-controlled integrator are no scheme's",

@@ -28,6 +28,7 @@ from omegadot.reports.text.numbers import short
 # Those whose bound is one of rounding. One horizon states what the three do.
 OF_A_SCENARIO = {"model", "equation"}
 OF_A_RUN = {"error_max", "drift_full"}
+SMALL = 1.1  # a factor below it is written as a difference: "1 times less" says nothing
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,8 @@ def _described(factor: float) -> str:
         return "it was zero"
     if factor == 0.0:
         return "it vanished"
+    if 1.0 / SMALL < factor < SMALL:
+        return f"{short(100.0 * abs(factor - 1.0))} % {'more' if factor > 1.0 else 'less'}"
     return f"{short(factor, 3)} times" if factor >= 1.0 else f"{short(1.0 / factor, 3)} times less"
 
 

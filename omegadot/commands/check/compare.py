@@ -47,7 +47,10 @@ def _of_a_run(found: Sequence[Change]) -> str:
         how = f"grew {short(factor)}x" if factor > 1.0 else f"shrank {short(1.0 / factor)}x"
         how = how if 0.0 < factor < math.inf else "vanished or appeared"
         return f"the integrator changed (the error of omega {how})"
-    return "the order is the same: a default such as a tolerance, a damping or a limit changed"
+    return (
+        "it is stepped by another scheme of the same order, or a default changed, such as a "
+        "tolerance, a damping or a limit"
+    )
 
 
 def meaning(was: Figures, now: Figures, found: Sequence[Change], same_version: bool) -> str:
@@ -101,7 +104,8 @@ def compare(
 ) -> Result:
     """Compare the figures of one run or one scenario with those that are stored.
 
-    failing: the gates that this run or scenario fails. Its new figures are not to be stored then.
+    failing: the gates that this run or scenario fails. Its new figures are not to be stored then,
+    and what the change means is not guessed.
     """
     key = RunKey(check.integrator or "", check.timestep, check.accuracy)
     own = now.runs.get(key) if now else None
@@ -121,7 +125,6 @@ def compare(
         return PASSED
     listed = "; ".join(change.sentence for change in found[:MOST_LISTED])
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
-    why = meaning(known, own, found, was.version == version)
-    return Result(
-        "fail", f"{versions}: {listed}{more}. Probably {why}. {advice[0].upper()}{advice[1:]}."
-    )
+    # A gate that fails has a cause of its own, and needs no guess besides.
+    why = "" if failing else f" Probably {meaning(known, own, found, was.version == version)}."
+    return Result("fail", f"{versions}: {listed}{more}.{why} {advice[0].upper()}{advice[1:]}.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
@@ -93,6 +94,13 @@ def failure(rows: Sequence[Row], cause: str = "") -> str:
     if others:
         message += f"; {listed(list(others))} {'fail' if len(others) > 1 else 'fails'} as well"
     return f"{message}. {CAUSE}{cause.rstrip('.')}." if cause else f"{message}."
+
+
+def to_read(message: str) -> str:
+    """The message without its cause where the sentence before has stated it word for word."""
+    stated, _, cause = message.partition(CAUSE)
+    clause = rf"(^|[:;.(] ?){re.escape(cause.rstrip('.'))}($|[;.)])"
+    return stated.rstrip() if cause and re.search(clause, stated.rstrip()) else message
 
 
 # The answers, besides runs, that a gate of a scenario judges.

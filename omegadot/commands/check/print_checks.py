@@ -14,10 +14,11 @@ from rich.text import Text
 
 from omegadot.commands import options
 from omegadot.commands.check.check_result import CHECKING, EXPLAINING, CheckResult
+from omegadot.commands.check.coverage import coverage
 from omegadot.commands.check.explained import explained
-from omegadot.commands.check.judge import CAUSE
+from omegadot.commands.check.judge import CAUSE, to_read
 from omegadot.commands.check.print_failing import print_failing
-from omegadot.commands.check.result import Check, Result, Verdict, coverage
+from omegadot.commands.check.result import Check, Result, Verdict
 from omegadot.commands.streams import on_one_line
 from omegadot.reports.text.numbers import first, times
 
@@ -31,13 +32,16 @@ FEW, MESSAGES, UNEXPLAINED, ALIKE = 20, 3, 10, 3
 
 
 def _cell(verdicts: Counter[Verdict]) -> Text:
-    """The worst verdict, with how many checks share it where there are several kinds."""
+    """The verdict that all checks share, or how many have each: 2 fail, 11 pass, 3 skip."""
     if not verdicts:
         return Text("-", "dim")
-    worst = next(verdict for verdict in ORDER if verdicts[verdict])
-    total = sum(verdicts.values())
-    sentence = worst if verdicts[worst] == total else f"{worst} {verdicts[worst]}/{total}"
+    worst, *others = [verdict for verdict in ORDER if verdicts[verdict]]
+    sentence = _counted(verdicts) if others else worst
     return Text(sentence, STYLES.get(worst, "green"))
+
+
+def _counted(verdicts: Counter[Verdict]) -> str:
+    return ", ".join(f"{verdicts[verdict]} {verdict}" for verdict in ORDER if verdicts[verdict])
 
 
 def _table(found: CheckResult) -> Table:
@@ -51,22 +55,13 @@ def _table(found: CheckResult) -> Table:
     for check, result in results.items():
         cells[names[check.scenario], check.gate][result.verdict] += 1
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    for name in ("scenario", *gates):
-        table.add_column(name, no_wrap=True)
+    table.add_column("scenario", no_wrap=True)
+    for gate in gates:  # which wraps on a narrow terminal: no count is cut off
+        table.add_column(gate)
     for scenario in scenarios:
         row = [_cell(cells[scenario, gate]) for gate in gates]
         table.add_row(Text(scenario), *row)
     return table
-
-
-def _mixed(found: CheckResult) -> str:
-    """What the figures of a cell mean, by the first that has some; "" where none has."""
-    cells = (str(cell) for column in _table(found).columns[1:] for cell in column.cells)
-    shown = next((cell.partition(" ") for cell in cells if "/" in cell), None)
-    if shown is None:
-        return ""
-    count, _, total = shown[2].partition("/")
-    return f"{shown[0]} {shown[2]}: {count} of the {total} checks of that row and gate"
 
 
 def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Check]]:
@@ -144,8 +139,6 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
         console.print(_table(found))
-        if example := _mixed(found):
-            console.print(Text(example, "dim"))
         if found.failing:  # whose files push the last line off the screen
             console.print(Text(_total(found), "bold"))
     sought = found.interrupted not in (CHECKING, EXPLAINING)
@@ -172,8 +165,7 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
 
 def _total(found: CheckResult) -> str:
     results = found.by_check
-    counts = Counter(result.verdict for result in results.values())
-    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
+    parts = _counted(Counter(result.verdict for result in results.values()))
     of = f"{len(results)} of " if found.interrupted else ""
     made = f"{of}{times(len(found.planned if of else results), 'check')}"
     total = f"{made}: {parts}." if parts else "There is nothing to check."
@@ -213,7 +205,8 @@ def _print_listed(
         for check in checks:
             console.print(Text(f"{verdict.upper()}  {check.id}", STYLES[verdict]))
         once = whole or number == 0  # one cause need not be read three times
-        console.print(Text(f"    {message if once else message.partition(CAUSE)[0].rstrip()}"))
+        text = to_read(message) if once else message.partition(CAUSE)[0].rstrip()
+        console.print(Text(f"    {text}"))
         left -= len(checks)
     if left:
         of = " of this cause" if cause else ""

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from omegadot.commands.check.judge import to_read
 from omegadot.commands.check.result import Check
 from omegadot.commands.check.suite import Suite
 
@@ -56,7 +57,7 @@ class CheckItem(pytest.Item):
         if result.verdict == "declared":
             pytest.xfail(result.message)
         if result.verdict != "pass":
-            raise CheckFailedError(result.message)
+            raise CheckFailedError(to_read(result.message))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The message alone: where in the harness it was raised helps no reader."""

@@ -10,8 +10,9 @@ import pytest
 
 from omegadot.adapters.registry import AdapterError
 from omegadot.commands.check.baseline_file import from_text, to_text
+from omegadot.commands.check.coverage import coverage
 from omegadot.commands.check.pytest_items import ENGINE, GATE, MESSAGE, ROOT, VERDICT, collect
-from omegadot.commands.check.result import REGISTRY, Tally, coverage
+from omegadot.commands.check.result import REGISTRY, Tally
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
 from omegadot.harness.usage import UsageError

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.harness.plan import Engine
 from omegadot.reports.summary.reasons import MODEL_ALONE
-from omegadot.reports.text.numbers import listed, times
+from omegadot.reports.text.numbers import times
 
 GATES_OF_A_SCENARIO = ("model", "equation")
 GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
@@ -183,34 +183,3 @@ class Registry:
 
 REGISTRY = TypeAdapter(Registry)
 """Makes a registry a text, and again a registry of the text in another process."""
-
-
-def coverage(subjects: Sequence[Subject], checks: Sequence[Check]) -> list[str]:
-    """Engine, version, and how many checks: so many gates on each scenario, and in each run, which
-    is an integrator at a step; a line an engine.
-    """
-    lines = []
-    for subject in subjects:
-        own = [check for check in checks if check.engine == subject.name]
-        parts = [
-            _covered([c for c in own if c.scenario and bool(c.integrator) is of_runs])
-            for of_runs in (False, True)
-        ]
-        chosen = set(subject.integrators) != set(subject.declared)
-        name = f"{subject.name} {subject.version}" + (
-            f" ({', '.join(subject.integrators)})" if chosen else ""
-        )
-        covered = ", and ".join(filter(None, parts))
-        lines.append(f"{name}: {times(len(own), 'check')}" + f", {covered}" * bool(covered))
-    return lines
-
-
-def _covered(checks: Sequence[Check]) -> str:
-    """``model and equation on each of 45 scenarios``, or ``scheme in each of 145 runs``."""
-    if not checks:
-        return ""
-    gates = list(dict.fromkeys(check.gate for check in checks))
-    runs = {(c.scenario, c.integrator, c.timestep, c.accuracy) for c in checks}
-    where, kind = ("in", "run") if checks[0].integrator else ("on", "scenario")
-    each = "each of " * (len(runs) > 1)
-    return f"{listed(gates)} {where} {each}{times(len(runs), kind)}"

@@ -155,6 +155,12 @@ verdict (verdicts)
 The result of a gate: pass, fail, declared (a declared exception) or info (measured and not judged).
 The verdict of a scenario is the worst one of its runs.
 = Values: those named above, one a gate and run
+
+whole inertia
+The inertia that the equation of rotation has: of a pivoted body about the pivot, which is its own
+about the centre of mass and what the parallel-axis theorem adds. Of a free body it is the inertia
+about the centre of mass.
+= Formula: I + m (|c|² 1 − c cᵀ), with c from the pivot to the centre of mass; kg m²
 """
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Adapter, Channel, Description, Format, Integrator, Knob
 from omegadot.reference_impl.coordinates import COORDINATES
+from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.workers.engine_end.checked import AnswerError, expect, numbers
 from omegadot.workers.wire import one_line
@@ -102,9 +103,12 @@ def _check_integrator(integrator: Integrator) -> None:
     if integrator.scheme is not None:
         expect(f"the scheme of {integrator.name}", integrator.scheme, str)
         if integrator.scheme not in SCHEMES:
+            scored = integrator.scheme in FLIGHT_SCHEMES
+            known = "it is known to omegadot score only; declare None" if scored else "give None"
             raise AnswerError(
                 f"the scheme of {integrator.name} is {integrator.scheme!r}, which the reference "
-                f"lacks; give None for a scheme of your own, or one of {', '.join(SCHEMES)}"
+                f"lacks; {known} (scheme = None) for a scheme that is not listed, or one of "
+                f"{', '.join(SCHEMES)}"
             )
     if integrator.coordinates not in COORDINATES:
         raise AnswerError(
