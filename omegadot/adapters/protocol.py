@@ -23,12 +23,12 @@ Channel = Literal[
     "time",
 ]
 Knob = Literal["timestep", "accuracy", "fixed-accuracy"]
-ONE_BODY = frozenset(
-    {
-        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
-        *("forward_dynamics", "inverse_dynamics"),
-    }
+FEATURES = (
+    *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+    *("forward_dynamics", "inverse_dynamics", "batch"),
 )
+"""What an engine may declare that it can do."""
+ONE_BODY = frozenset(FEATURES) - {"batch"}
 """The features of an engine that takes a single body under every load."""
 
 
@@ -74,8 +74,7 @@ class Description:
     precision: of the numbers that it keeps and computes with, by which rounding is judged.
     conventions: how the engine itself keeps states (frames, orders), one clause each.
     switched_off: defaults that disturb the motion and were turned off for the ``physics`` setup.
-    features: what it can do, of "free", "pivot", "gravity", "damping", "torque", "full_inertia",
-    "offset_com", "forward_dynamics", "inverse_dynamics", "batch".
+    features: what it can do, of `FEATURES`. Each that is a call's name needs that call.
     importers: the formats of robot files that the engine's own reader takes. For each the adapter
     has ``load_file(system, format)``, which does what `Adapter.load` does with a model that the
     engine has read from a file of the body (`omegadot.adapters.body_files` writes it).

@@ -58,11 +58,22 @@ class AdapterError(ValueError):
 
 
 def registered() -> dict[str, str]:
-    """Every engine name with its ``module:Class`` target; entry points add to our own."""
+    """Every engine name with its ``module:Class`` target; entry points add to our own.
+
+    Raises AdapterError where one of them has the name of another engine.
+    """
     from importlib.metadata import entry_points  # no worker asks: it is given the target itself
 
-    found = {point.name: point.value for point in entry_points(group=ENTRY_POINT_GROUP)}
-    return {**found, **OURS}
+    found = dict(OURS)
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        for name, target in found.items():
+            if name.casefold() == point.name.casefold() and target != point.value:
+                raise AdapterError(
+                    f"entry point {point.name} = {point.value}: {name} is the name of {target} "
+                    "too; uninstall the package of one, or give the entry point another name."
+                )
+        found[point.name] = point.value
+    return found
 
 
 def is_absent(name: str) -> bool:

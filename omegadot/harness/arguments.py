@@ -13,7 +13,7 @@ from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import is_absent
 from omegadot.gates.case import ACCURACIES, Case, sweep_of
 from omegadot.harness.engine_target import EngineLike, is_target, name_of, target_of
-from omegadot.harness.own_engines import known_engines
+from omegadot.harness.own_engines import check_own_name, known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
@@ -53,6 +53,7 @@ def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
                 "program with its arguments."
             )
         name = name_of(target)
+        check_own_name(name, target)
         if found.setdefault(name, target) != target:
             raise UsageError(
                 f"--adapter: two engines are called {name}, {found[name]} and {target}; run them "
@@ -86,10 +87,15 @@ def engine_choices(
             raise UsageError(f"{option} {given}: no such engine; {nearest(name, known)}.")
         picked.setdefault(name, []).append(integrator)
     picked |= {name: [""] for name in added if name not in picked}
-    return [
-        EngineChoice(name, known[name], () if "" in names else tuple(dict.fromkeys(names)), True)
-        for name, names in picked.items()
-    ]
+    return [_choice(name, known[name], tuple(dict.fromkeys(i))) for name, i in picked.items()]
+
+
+def _choice(name: str, target: str, integrators: tuple[str, ...]) -> EngineChoice:
+    """An engine requested by its integrators, of which "" stands for all."""
+    if "" not in integrators:
+        return EngineChoice(name, target, integrators, required=True)
+    named = tuple(integrator for integrator in integrators if integrator)
+    return EngineChoice(name, target, required=True, named=named)
 
 
 Via = Literal["api", "urdf", "mjcf"]
@@ -128,7 +134,7 @@ def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[
     Raises UsageError where one is requested that the engine does not have.
     """
     names = [integrator.name for integrator in description.integrators]
-    for wanted in choice.integrators:
+    for wanted in (*choice.integrators, *choice.named):
         if wanted not in names:
             raise UsageError(
                 f"{choice.name}:{wanted}: {choice.name} {description.version} has no "

@@ -14,7 +14,7 @@ import os
 import re
 from pathlib import Path
 
-from omegadot.adapters.registry import registered
+from omegadot.adapters.registry import OURS, PROGRAM, AdapterError, registered
 from omegadot.harness.engine_target import target_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios.files import read_toml
@@ -25,12 +25,28 @@ _LONGEST = 60
 _NAME = re.compile(rf"[A-Za-z][\w.+-]{{0,{_LONGEST - 1}}}", re.ASCII)
 
 
+def check_own_name(name: str, target: str) -> None:
+    """Raise UsageError where an engine of one's own would pass for a built-in one."""
+    same = {own for other, own in OURS.items() if other.casefold() == name.casefold()}
+    if not same or target in same:
+        return
+    program = target.startswith(PROGRAM)
+    advice = "write another before it, as NAME=PROGRAM" if program else "rename the class"
+    raise UsageError(
+        f"{target.removeprefix(PROGRAM)}: its name, {name}, is that of a built-in engine; {advice}."
+    )
+
+
 def known_engines() -> dict[str, str]:
     """Targets by name; no name may stand for two.
 
-    Raises UsageError and ScenarioError where the file is not as it must be.
+    Raises UsageError and ScenarioError where the file is not as it must be, UsageError where an
+    entry point has the name of another engine.
     """
-    known = registered()
+    try:
+        known = registered()
+    except AdapterError as error:
+        raise UsageError(str(error)) from None
     if not os.path.lexists(FILE):
         return known
     tables = read_toml(Path(FILE), FILE)

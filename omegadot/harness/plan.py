@@ -11,6 +11,7 @@ from omegadot.adapters.protocol import Description, Integrator
 class EngineChoice:
     """An engine requested, and which of its integrators (all of them when empty).
 
+    named: integrators requested besides all of them; the engine must have these too.
     via: the format of the files by which its bodies go in; "" for its API. The name has it too.
     """
 
@@ -19,6 +20,7 @@ class EngineChoice:
     integrators: tuple[str, ...] = ()
     required: bool = False
     via: str = ""
+    named: tuple[str, ...] = ()
 
     @property
     def engine(self) -> str:

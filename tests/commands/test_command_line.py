@@ -121,6 +121,14 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("run", "sphere", "--engine", "mujocco"), "write mujoco"),
         (("run", "sphere", "--engine", "mujoco:RK5"), "write RK4"),
         (("run", "sphere", "--engine", "reference:rk5"), "no integrator 'rk5'"),
+        (
+            ("run", "sphere", "--engine", "reference", "--engine", "reference:rk5"),
+            "reference:rk5: reference",
+        ),
+        (
+            ("run", "sphere", "--engine", "reference:rk5", "--engine", "reference"),
+            "no integrator 'rk5'",
+        ),
         (("run", "sphere", "--timestep", "0"), "not a positive number"),
         (("run", "sphere", "--timestep", "nan"), "not a positive number"),
         (("run", "sphere", "--timestep", "1e9"), "longer than"),

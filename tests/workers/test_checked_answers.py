@@ -17,6 +17,7 @@ from omegadot.workers.engine_end.checked import (
     numbers,
 )
 from omegadot.workers.engine_end.described import checked_description, description_of
+from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.engine_end.worker import failure
 from omegadot.workers.wire import one_line
 
@@ -197,11 +198,35 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"conventions": "body axes"}, "description.conventions is of type str"),
         ({"links": "https://"}, "description.links is of type str"),
         ({"features": "free"}, "description.features is of type str"),
+        ({"features": frozenset({"teleport"})}, "names 'teleport'; give one of free, pivot, grav"),
+        ({"importers": ("sdf",)}, "description.importers names 'sdf'; give one of urdf, mjcf"),
     ],
 )
 def test_a_description_is_checked(fields: dict[str, Any], text: str) -> None:
     with pytest.raises(AnswerError, match=text):
         checked_description(replace(ENGINE, **fields))
+
+
+@pytest.mark.parametrize(
+    ("operation", "method", "fields"),
+    [
+        ("forward", "forward_dynamics", {}),
+        ("inverse", "inverse_dynamics", {"acceleration": {"angular": 0.0, "linear": 0.0}}),
+    ],
+)
+def test_a_feature_without_its_method_is_named(
+    operation: str, method: str, fields: dict[str, Any]
+) -> None:
+    """Caught: an AttributeError with a line of omegadot's own."""
+    request = {"states": vars(state(2)), **fields}
+    adapter: Any = WithSteps()
+    with pytest.raises(AnswerError) as caught:
+        OPERATIONS[operation](adapter, request)
+    sentence = (
+        f"description.features names '{method}', and the adapter has no method {method}(); write "
+        "the method, or leave the feature out"
+    )
+    assert failure(caught.value)["reason"] == sentence
 
 
 def test_texts_become_one_printable_line() -> None:

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
+from omegadot.adapters import protocol
 from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios.errors import ScenarioError
@@ -24,10 +25,7 @@ ACCURACY: dict[str, tuple[str, str]] = {
     "linear-momentum-drift": ("ratio", "1"),
     "flip-time": ("time", "s"),
 }
-FEATURES = (
-    *("free", "pivot", "gravity", "damping", "torque", "full-inertia", "offset-com"),
-    *("forward-dynamics", "inverse-dynamics", "batch"),
-)
+FEATURES = tuple(name.replace("_", "-") for name in protocol.FEATURES)
 PRECISIONS: dict[str, Precision] = {
     "double": "double", "float64": "double", "single": "single", "float32": "single"
 }  # fmt: skip

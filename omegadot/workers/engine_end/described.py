@@ -12,7 +12,15 @@ from typing import Any, get_args
 
 import numpy as np
 
-from omegadot.adapters.protocol import Adapter, Channel, Description, Format, Integrator, Knob
+from omegadot.adapters.protocol import (
+    FEATURES,
+    Adapter,
+    Channel,
+    Description,
+    Format,
+    Integrator,
+    Knob,
+)
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
@@ -44,10 +52,12 @@ def checked_description(found: Any) -> Description:
     for name in ("conventions", "switched_off", "links", "features", "importers"):
         for item in getattr(found, name):
             expect(f"an item of description.{name}", item, str)
-    for item in found.importers:
-        if item not in FORMATS:
-            known = ", ".join(FORMATS)
-            raise AnswerError(f"description.importers names {item!r}; give one of {known}")
+    for name, known in (("features", FEATURES), ("importers", FORMATS)):
+        for item in getattr(found, name):
+            if item not in known:
+                raise AnswerError(
+                    f"description.{name} names {item!r}; give one of {', '.join(known)}"
+                )
     for integrator in found.integrators:
         expect("an item of description.integrators", integrator, Integrator)
         _check_integrator(integrator)

@@ -39,6 +39,17 @@ def _own(state: State) -> State:
     return State(*map(np.array, vars(state).values()))
 
 
+def _declared(adapter: Adapter, feature: str) -> Callable[..., Any]:
+    """The method of a feature. Raises AnswerError where the adapter declares it and has none."""
+    method: Callable[..., Any] | None = getattr(adapter, feature, None)
+    if method is None:
+        raise AnswerError(
+            f"description.features names {feature!r}, and the adapter has no method {feature}(); "
+            "write the method, or leave the feature out"
+        )
+    return method
+
+
 def _load(adapter: Adapter, request: Request) -> Any:
     """Load a system; the description that comes back may refers to this very system."""
     adapter.load(system_from(request["system"]))
@@ -63,13 +74,14 @@ def _forward(adapter: Adapter, request: Request) -> Any:
 
 
 def _accelerations(adapter: Adapter, states: State) -> Acceleration:
-    found = adapter.forward_dynamics(states)
+    found = _declared(adapter, "forward_dynamics")(states)
     return checked("forward_dynamics()", found, Acceleration, _lead(states))
 
 
 def _inverse(adapter: Adapter, request: Request) -> Any:
     states = State(**request["states"])
-    torque = adapter.inverse_dynamics(states, Acceleration(**request["acceleration"]))
+    inverse_dynamics = _declared(adapter, "inverse_dynamics")
+    torque = inverse_dynamics(states, Acceleration(**request["acceleration"]))
     return {"torque": numbers("inverse_dynamics()", torque, (*_lead(states), 3))}
 
 
