@@ -164,8 +164,9 @@ def test_units_that_cannot_be_are_questioned(tmp_path, capsys):
     np.savetxt(path, rows, "%.17g", ",", header="time,wx,wy,wz", comments="")
     result = run_fit(capsys, path)
     assert result.code == 2
-    assert "read in rad/s and s, the body turns by" in result.err
-    assert "--time-unit" in result.err
+    assert "read in rad/s (the default) and s (the default), the body turns by" in result.err
+    looks = "omega looks like mrad/s or the time looks like ms; "
+    assert f"{looks}give --rate-unit mrad/s or give --time-unit ms." in result.err
 
 
 def test_a_window_in_other_units_is_scored_from_its_start(tmp_path, capsys):

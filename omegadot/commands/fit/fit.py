@@ -14,8 +14,8 @@ from omegadot.commands.fit.compared import Terms
 from omegadot.commands.fit.determined import determined
 from omegadot.commands.fit.estimates import Estimates
 from omegadot.commands.fit.models import compare_models
+from omegadot.commands.fit.other_units import check_fit, samples_in_units
 from omegadot.commands.fit.result import FitResult
-from omegadot.commands.fit.samples import samples_of
 from omegadot.commands.fit.scale import known_of, torque_of
 from omegadot.commands.fit.scenario_file import MARK, scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
@@ -78,9 +78,10 @@ def fit(
     target = None if out is None else _target(path_of(out))
     mapped = path_of(map_file) if map_file else None
     reading = reading_of(read_table(path_of(trace)), columns, mapped, settings)
-    samples = samples_of(reading)
+    samples = samples_in_units(reading, load, terms)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
+    check_fit(compared.noise, reading, load, terms)
     known_by = determined(samples, compared, known, load)
     own, scale = known_by.own, known_by.scale
     found_out = sentences(known_by, own, terms)

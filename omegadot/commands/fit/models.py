@@ -28,12 +28,8 @@ ALONG = 0.1  # rad: a torque nearer to the axis than this does not turn it
 def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     """Fit every model that the terms allow, and choose. digits: in the units of the fit."""
     data = sized(data)
-    scale, turning = bool(np.any(data.torque)), data.orientation is not None
-    rich = Free(True, scale, terms.bias is not False, terms.damping is not False, turning)
-    plain = replace(rich, bias=bool(terms.bias), damping=bool(terms.damping))
-    found = follow(data, starts(data, rich), rich)
-    first = follow(data, [*starts(data, plain), found.one], plain) if plain != rich else found
-    found = min(found, solve(data, first.one, rich), key=lambda fit: fit.cost)
+    first, found = nearest_fits(data, terms)
+    rich = found.free
     data, found = _weighted(data, found, digits)
     fits = {rich: finish(data, found)}
     for free in _smaller(rich, terms, _keeps_direction(data)):
@@ -56,6 +52,16 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
         fits[rich] = again if _followed(data, again) else replace(lowest, free=rich)
     found_out = chosen_of(data, fits, rich, terms, digits)
     return replace(found_out, vague=_vague(found_out))
+
+
+def nearest_fits(data: Data, terms: Terms) -> tuple[Fitted, Fitted]:
+    """The fits with the fewest and with the most terms, close to their minima. data: `sized`."""
+    scale, turning = bool(np.any(data.torque)), data.orientation is not None
+    rich = Free(True, scale, terms.bias is not False, terms.damping is not False, turning)
+    plain = replace(rich, bias=bool(terms.bias), damping=bool(terms.damping))
+    found = follow(data, starts(data, rich), rich)
+    first = follow(data, [*starts(data, plain), found.one], plain) if plain != rich else found
+    return first, min(found, solve(data, first.one, rich), key=lambda fit: fit.cost)
 
 
 def _followed(data: Data, fit: Fitted) -> bool:

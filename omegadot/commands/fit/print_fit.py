@@ -23,6 +23,7 @@ from omegadot.written import written
 
 WIDTH_WHEN_PIPED = 200
 UNKNOWN = "not determined"
+NONE = "–"
 
 
 def print_json(result: FitResult) -> None:
@@ -41,13 +42,15 @@ def print_text(result: FitResult, out: Path | None) -> None:
             f"turns by {written(samples.data(np.zeros(3)).turned[-1], 3)} rad"
         )
     )
+    if not result.errors_hold:  # before the numbers that it is about
+        console.print(Text(result.sentences[0]))
     if result.shape_determined:
         console.print(_moments(result))
         if np.all(result.estimates.moments_known):
             console.print(_tensor(result))
     console.print(_others(result))
     console.print(_models(result))
-    for sentence in result.sentences:
+    for sentence in result.sentences[0 if result.errors_hold else 1 :]:
         console.print(Text(sentence))
     if out is not None:
         for line in _next(result, out):
@@ -62,7 +65,7 @@ def _grid(*heads: str) -> Table:
 
 
 def _moments(result: FitResult) -> Table:
-    own = result.estimates
+    own, hold = result.estimates, result.errors_hold
     unit = result.unit or "of the largest"
     table = _grid("principal moment", unit, "+-", "axis (body)", "+- deg")
     rows = zip(
@@ -70,8 +73,9 @@ def _moments(result: FitResult) -> Table:
         own.axes_known, strict=True,
     )  # fmt: skip
     for letter, (moment, error, sure, axis, turn, fixed) in zip("xyz", rows, strict=True):
-        shown = _pair(moment, error) if sure else (UNKNOWN, "")
-        angle = written(np.rad2deg(turn), 2)
+        value, sigma = _pair(moment, error)
+        shown = (value, sigma if hold else NONE) if sure else (UNKNOWN, "")
+        angle = written(np.rad2deg(turn), 2) if hold else NONE
         table.add_row(
             f"near {letter}", *shown, *((direction(axis), angle) if fixed else (UNKNOWN, ""))
         )
@@ -82,26 +86,27 @@ def _tensor(result: FitResult) -> Table:
     own, unit = result.estimates, result.unit or "of the largest"
     table = _grid("inertia tensor", f"x, {unit}", "y", "z")
     for letter, row, errors in zip("xyz", own.inertia, own.inertia_errors, strict=True):
-        cells = (" +- ".join(_pair(*pair)) for pair in zip(row, errors, strict=True))
+        pairs = zip(row, errors, strict=True)
+        cells = (_shown(*pair, result.errors_hold) for pair in pairs)
         table.add_row(letter, *cells)
     return table
 
 
 def _others(result: FitResult) -> Table:
-    own = result.estimates
+    own, hold = result.estimates, result.errors_hold
     table = _grid("quantity", "x", "y", "z", "unit")
-    _row(table, "omega, first sample", own.omega, own.omega_errors, "rad/s", own.omega_known)
+    _row(table, "omega, first sample", own.omega, own.omega_errors, "rad/s", hold, own.omega_known)
     if not np.all(own.omega_known):
-        _row(table, "omega + bias, first sample", own.reading, own.reading_errors, "rad/s")
+        _row(table, "omega + bias, first sample", own.reading, own.reading_errors, "rad/s", hold)
     if own.orientation is not None:
         q = ", ".join(f"{part:.6f}" for part in own.orientation)
         table.add_row("attitude, first sample", f"w x y z = {q}", "", "", "")
     if "bias" in result.terms:
-        _row(table, "gyro bias", own.bias, own.bias_errors, "rad/s", own.bias_known)
+        _row(table, "gyro bias", own.bias, own.bias_errors, "rad/s", hold, own.bias_known)
     if "damping" in result.terms:
         moment = "the largest moment" if result.compared.chosen.shape else "the moment about omega"
         unit = "N m s/rad" if result.unit else f"1/s, over {moment}"
-        table.add_row("damping", " +- ".join(_pair(own.damping, own.damping_error)), "", "", unit)
+        table.add_row("damping", _shown(own.damping, own.damping_error, hold), "", "", unit)
     _row(table, "residual, rms", result.rms, None, "rad/s")
     if result.rms_attitude is not None:
         table.add_row("residual of attitude, rms", written(result.rms_attitude, 3), "", "", "rad")
@@ -114,6 +119,7 @@ def _row(
     values: Array,
     errors: Array | None,
     unit: str,
+    hold: bool = True,
     known: NDArray[np.bool_] | None = None,
 ) -> None:
     if errors is None:
@@ -121,7 +127,7 @@ def _row(
         return
     sure = [True] * len(values) if known is None else known
     rows = zip(values, errors, sure, strict=True)
-    cells = (" +- ".join(_pair(value, error)) if fixed else UNKNOWN for value, error, fixed in rows)
+    cells = (_shown(value, error, hold) if fixed else UNKNOWN for value, error, fixed in rows)
     table.add_row(name, *cells, unit)
 
 
@@ -132,6 +138,11 @@ def _models(result: FitResult) -> Table:
         terms = " and ".join(("plain", *model.terms)[bool(model.terms) :])
         table.add_row(terms, shown, written(model.rms, 3), "chosen" if model.chosen else "")
     return table
+
+
+def _shown(value: float, error: float, hold: bool) -> str:
+    """A number with its standard error, where that holds."""
+    return " +- ".join(_pair(value, error)[: 2 if hold else 1])
 
 
 def _pair(value: float, error: float) -> tuple[str, str]:

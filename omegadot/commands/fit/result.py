@@ -60,6 +60,11 @@ class FitResult:
         return self.compared.chosen.shape and self.estimates.shape_known
 
     @property
+    def errors_hold(self) -> bool:
+        """Whether the residuals are noise, which standard errors come from."""
+        return not self.compared.noise.is_model_error
+
+    @property
     def terms(self) -> tuple[str, ...]:
         """Which of bias and damping are fitted, and determined."""
         own = self.estimates
@@ -93,7 +98,7 @@ class FitResult:
         own, samples = self.estimates, self.samples
         shape = self.shape_determined
         whole = shape and bool(np.all(own.moments_known))
-        return {
+        found = {
             "trace": samples.file,
             "samples": len(samples.times),
             "from": float(samples.times[0]),
@@ -130,6 +135,8 @@ class FitResult:
             "sentences": self.sentences,
             "scenario": self.scenario.to_dict(),
         }
+        no_errors = {key: None for key in found if key.endswith(("_error", "_errors"))}
+        return found if self.errors_hold else {**found, **no_errors}
 
 
 def _terms(free: Free) -> tuple[str, ...]:

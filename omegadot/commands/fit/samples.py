@@ -10,6 +10,7 @@ from omegadot.commands.fit.data import Data
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array, Body, System
 from omegadot.written import written
@@ -19,11 +20,16 @@ MOST_TURNED = 5000.0  # rad; an evaluation of the motion takes seconds then
 _ANY = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),))  # a trace of omega needs no body
 
 
+class TooFastError(TraceError):
+    """The body turns further from sample to sample than samples show; the advice is to be added."""
+
+
 @dataclass(frozen=True)
 class Samples:
     """What is fitted. file: its name.  times: (n,) s, of the trace.  omega: (n, 3) rad/s, body.
 
     orientation: (n, 4), or None.  digits: rad/s and rad, the resolution of a component.
+    tick: s, what is open of a time.
     """
 
     file: str
@@ -31,6 +37,7 @@ class Samples:
     omega: Array
     orientation: Array | None
     digits: tuple[float, float]
+    tick: float
 
     @property
     def size(self) -> float:
@@ -50,7 +57,7 @@ class Samples:
 
 
 def samples_of(reading: Reading) -> Samples:
-    """The samples of a trace. Raises TraceError where they cannot be fitted."""
+    """The samples of a trace. Raises TraceError where they cannot be fitted, as by TooFastError."""
     trace = trace_of(reading, _ANY)
     file, omega = reading.table.file, trace.angular_velocity
     if omega is None or np.any(np.isnan(omega)):
@@ -59,12 +66,16 @@ def samples_of(reading: Reading) -> Samples:
             "like --column w=A,B,C."
         )
     turned = None if trace.orientation is None else normalize(trace.orientation)
-    found = Samples(file, trace.times, omega, turned, _digits(trace))
-    units = f"{reading.how.rate_unit} and {reading.how.time_unit}"
-    named = [repr(n) for option, n in reading.named.items() if option in ("rate-unit", "time-unit")]
-    advice = f"correct the units in the names of its columns, as of {named[0]}" if named else ""
-    _check(found, units, advice or "give the units of the file with --rate-unit and --time-unit")
+    tick = float(np.max(reading.stamps.open) + 2.0 * EPS * np.max(np.abs(trace.times)))
+    found = Samples(file, trace.times, omega, turned, _digits(trace), tick)
+    _check(found, reading)
     return found
+
+
+def units_of(reading: Reading) -> str:
+    """Those of omega and of the times, and where each is from."""
+    time = reading.origin("time_unit") if reading.timed else "s"
+    return f"{reading.origin('rate_unit')} and {time}"
 
 
 def _digits(trace: Trace) -> tuple[float, float]:
@@ -78,11 +89,8 @@ def _digits(trace: Trace) -> tuple[float, float]:
     return omega, turn
 
 
-def _check(found: Samples, units: str, advice: str) -> None:
-    """Raise TraceError where nothing can be fitted.
-
-    units: in which omega and times were read.  advice: how to have others taken.
-    """
+def _check(found: Samples, reading: Reading) -> None:
+    """Raise TraceError where nothing can be fitted, TooFastError where the units show it."""
     count = len(found.times)
     if count < LEAST_SAMPLES:
         raise TraceError(
@@ -95,10 +103,10 @@ def _check(found: Samples, units: str, advice: str) -> None:
         )
     turned = float(found.data(np.zeros(3)).turned[-1])
     if turned > np.pi * (count - 1):
-        raise TraceError(
-            f"{found.file}: read in {units}, the body turns by "
-            f"{written(turned / (count - 1), 3)} rad from "
-            f"sample to sample, more than samples can show; {advice}."
+        raise TooFastError(
+            f"{found.file}: read in {units_of(reading)}, the body turns by "
+            f"{written(turned / (count - 1), 3)} rad from sample to sample, more than samples can "
+            "show"
         )
     if turned > MOST_TURNED:
         raise TraceError(

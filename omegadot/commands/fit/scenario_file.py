@@ -24,7 +24,7 @@ def scenario_of_fit(
 ) -> Scenario:
     """The body, its state at the first sample, and its load. Raises ScenarioError for the name."""
     duration = float(samples.times[-1] - samples.times[0])
-    interval = min(float(np.median(np.diff(samples.times))), duration)
+    interval = min(_shortest(float(np.median(np.diff(samples.times))), samples.tick), duration)
     initial = {"angular_velocity": own.omega}
     if own.orientation is not None:
         initial["orientation"] = own.orientation
@@ -44,6 +44,12 @@ def scenario_of_fit(
             "sample": interval,
         },
     )
+
+
+def _shortest(value: float, within: float) -> float:
+    """The number with the fewest digits that is so near: differences of times end in rounding."""
+    found = (float(f"{value:.{digits}g}") for digits in range(1, 17))
+    return next((number for number in found if abs(number - value) <= within), value)
 
 
 def _name(file: str) -> str:

@@ -20,6 +20,7 @@ def sentences(known: Determined, own: Estimates, terms: Terms) -> list[str]:
     """All that hold."""
     compared = known.compared
     return [
+        *_no_errors(compared),
         *([] if own.size_known else ["The torque is not seen in omega: no scale is determined."]),
         *(_shape(own) if compared.chosen.shape else _no_shape(known, own)),
         *_open(known, own),
@@ -27,6 +28,19 @@ def sentences(known: Determined, own: Estimates, terms: Terms) -> list[str]:
         *_bias(known, own),
         *_damping(compared, known.scale, own, terms),
         *_quality(compared),
+    ]
+
+
+def _no_errors(compared: Compared) -> list[str]:
+    """First of all, why no number has a standard error."""
+    noise = compared.noise
+    if not noise.is_model_error:
+        return []
+    return [
+        "No standard error is given: the residuals are "
+        f"{written(noise.omega / noise.resolution, 2)} times the resolution of omega, and "
+        f"neighbours correlate by {noise.correlation:.2f} at least, so that they are no noise: "
+        "the model lacks something, such as drag, or units or axes are not as declared."
     ]
 
 
@@ -44,8 +58,9 @@ def _no_shape(known: Determined, own: Estimates) -> list[str]:
     ]
     if known.compared.rich.scale and own.size_known:
         value, error = known.moment_about(axis)
+        sure = "" if known.compared.noise.is_model_error else f" +- {written(error, 2)}"
         found.append(
-            f"The moment about that axis is {written(value)} +- {written(error, 2)} kg m^2; "
+            f"The moment about that axis is {written(value)}{sure} kg m^2; "
             "the others are not determined."
         )
     return found
@@ -136,11 +151,10 @@ def _bias(known: Determined, own: Estimates) -> list[str]:
     if compared.chosen.bias:
         return []
     errors = ", ".join(written(error, 2) for error in own.bias_errors)
+    sure = "" if compared.noise.is_model_error else f"; its standard errors are {errors} rad/s"
     return [
         "A gyro bias is not supported by the data: noise alone gains as much with a probability of "
-        f"{written(compared.chances.get('bias', 1.0), 2)}. It is taken as zero; its standard "
-        "errors are "
-        f"{errors} rad/s."
+        f"{written(compared.chances.get('bias', 1.0), 2)}. It is taken as zero{sure}."
     ]
 
 
@@ -166,15 +180,13 @@ def _damping(compared: Compared, scale: Scale, own: Estimates, terms: Terms) -> 
             f"{written(chance, 2)}."
         )
     unit = "N m s/rad" if scale.unit else "1/s"
-    return [
-        f"{found} It is taken as zero; its standard error is {written(own.damping_error, 2)} "
-        f"{unit}."
-    ]
+    sure = f"; its standard error is {written(own.damping_error, 2)} {unit}"
+    return [f"{found} It is taken as zero{'' if compared.noise.is_model_error else sure}."]
 
 
 def _quality(compared: Compared) -> list[str]:
     noise, found = compared.noise, []
-    if noise.correlation > 0.0:
+    if noise.correlation > 0.0 and not noise.is_model_error:
         found.append(
             f"Neighbouring residuals correlate by {noise.correlation:.2f}: the model lacks "
             "something, or the noise is not white. Standard errors are enlarged by "

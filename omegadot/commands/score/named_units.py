@@ -15,8 +15,8 @@ _KINDS = {"t": "time", "w": "rate", "e": "angle", "p": "length", "v": "length", 
 _OVER_TIME = {"v", "a"}
 _WHAT = {"t": "a time", "w": "an angular velocity", "e": "an angle", "p": "a length"}
 _WHAT |= {"v": "a velocity", "a": "an angular acceleration"}
-# How headers write units that options know by one name.
-_WORDS = {"dps": "deg/s", "rad/sec": "rad/s", "rev/min": "rpm", "r/min": "rpm", "1/min": "rpm"}
+WORDS = {"dps": "deg/s", "rad/sec": "rad/s", "rev/min": "rpm", "r/min": "rpm", "1/min": "rpm"}
+"""How headers write units that options know by one name."""
 _PARTS = {
     **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
     **dict.fromkeys(("msec", "millisecond", "milliseconds"), "ms"),
@@ -37,7 +37,7 @@ def _plain(text: str) -> str:
     text = _SQUARED.sub("/s/s", text)
     parts = [part.strip() for part in text.split("/")]
     text = "/".join(_PARTS.get(part, part) for part in parts)
-    return _WORDS.get(text, text)
+    return WORDS.get(text, text)
 
 
 def unit_in(name: str, role: str) -> str | None:

@@ -39,13 +39,15 @@ Assigned = list[tuple[str, list[str]]]
 class Reading:
     """A trace's file and how it is read.
 
-    named: by option, such as ``rate-unit``, the column whose name has that unit.
+    named: by option, such as ``rate-unit``, the column whose name has that unit.  declared: the
+    options that are given.
     """
 
     table: Table
     columns: Columns
     how: Convention
     named: Mapping[str, str] = field(default_factory=dict)
+    declared: frozenset[str] = frozenset()
 
     def advice(self, unit_field: str, unit: str) -> str:
         """How to have another unit taken: by its option, or where a name has one, by that."""
@@ -55,12 +57,25 @@ class Reading:
             return f"give {option} {unit}"
         return f"correct the unit in the name of column {name!r}"
 
+    def origin(self, unit_field: str) -> str:
+        """The unit of a field, and where it is from, for a sentence."""
+        option = option_of(unit_field)
+        key, unit = option.removeprefix("--"), getattr(self.how, unit_field)
+        if key in self.named:
+            return f"{unit} (by the name of column {self.named[key]!r})"
+        return f"{unit} ({f'by {option}' if key in self.declared else 'the default'})"
+
     @cached_property
     def stamps(self) -> Stamps:
         """The samples' times in the trace's own time. Raises TraceError."""
         if self.how.rate is not None:
             return counted(self.table, self.how.rate)
         return stamps_of(self.table, self.columns["t"], self.how.scale_of("time"))
+
+    @property
+    def timed(self) -> bool:
+        """Whether its times are numbers, in a unit that may be another."""
+        return self.how.rate is None and not self.stamps.dated
 
     @property
     def times(self) -> Array:
@@ -114,7 +129,8 @@ def reading_of(
     options = {key: getattr(how, SETTINGS[key]) for key in declared}
     named = named_units(table, roles, options)
     how = convention_of({**declared, **{option: unit for option, (unit, _) in named.items()}})
-    found = Reading(table, roles, how, {option: name for option, (_, name) in named.items()})
+    names = {option: name for option, (_, name) in named.items()}
+    found = Reading(table, roles, how, names, frozenset(declared))
     first, last = (
         None if text is None else instant(text, option)
         for text, option in ((how.from_time, "--from"), (how.to_time, "--to"))
