@@ -28,7 +28,6 @@ from omegadot.written import written
 Unit = tuple[str, str]
 """A kind, ``rate`` or ``time``, and a unit of it."""
 _WHAT = {"rate": "omega", "time": "the time"}
-CLEARER = 3.0  # times: a sum of squares nine times smaller
 MOST_NUMBERS = 16  # of the richest model
 _SAME = 1e-9  # relative: the factors of two units are one, but for rounding
 
@@ -62,9 +61,9 @@ def samples_in_units(reading: Reading, torque: Array, terms: Terms) -> Samples:
 
 
 def check_fit(noise: Noise, reading: Reading, torque: Array, terms: Terms) -> None:
-    """Raise TraceError where the fit leaves no noise, and in another unit it is far nearer.
+    """Raise TraceError where the fit leaves more than noise, and in another unit it is far nearer.
 
-    That is NEARER times, or CLEARER times where noise alone is left, in more than chance.
+    That is NEARER times, or where noise alone is left, by more than chance: an F-test of the two.
     """
     own, spare = _size(noise, reading), max(3 * len(reading.times) - MOST_NUMBERS, 1)
     if not (noise.seen and noise.correlation > 0.0):
@@ -74,8 +73,7 @@ def check_fit(noise: Noise, reading: Reading, torque: Array, terms: Terms) -> No
     if best is None or best.misfit >= GROSS:
         return
     chance = float(fdtrc(spare, spare, (own / best.misfit) ** 2)) * len(found)
-    clear = best.white and best.misfit * CLEARER < own and chance < ALLOWED
-    if clear or best.misfit * NEARER < own:
+    if (best.white and chance < ALLOWED) or best.misfit * NEARER < own:
         raise TraceError(
             f"{reading.table.file}: read in {units_of(reading)}, no motion of a body is nearer "
             f"than {written(100.0 * own, 2)} % of omega, and {written(100.0 * best.misfit, 2)} % "
