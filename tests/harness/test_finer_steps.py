@@ -19,7 +19,7 @@ from omegadot.gates.errors.findings import Declared, MeasuredSweep, findings_of
 from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN
 from omegadot.harness.judging.runs import _finer_steps_decide, _left_open, _undetermined
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import Array, Body, Load, System
 
 BOUND = 1e-12
 ORDERS: dict[str, int | None] = dict.fromkeys(CHANNELS, 4)
@@ -64,8 +64,9 @@ def test_single_precision_and_known_schemes_are_refined_as_long_as_anything_is_o
 def test_no_digit_of_the_inverse_leaves_an_overflow_unjudged(
     least: float, eps: float, kind: str
 ) -> None:
-    scale = SimpleNamespace(largest=1.0, smallest=least)
-    truth: Any = SimpleNamespace(yardstick=SimpleNamespace(scale=scale, eps=eps))
+    body = Body(np.array(1.0), np.zeros(3), np.diag([least, 1.0, 1.0]))
+    system = System((body,), Load())
+    truth: Any = SimpleNamespace(yardstick=SimpleNamespace(system=system, eps=eps))
     assert _undetermined(truth, {"omega": BLOWN_UP_UNSEEN})["omega"].kind == kind
 
 

@@ -151,7 +151,8 @@ def trajectory_gap(
     yardstick = Yardstick(system, times, expected)
     named = next(i for i in adapter.description.integrators if i.name == integrator)
     key = scheme_key(named, system) or SchemeKey("rk4-quaternion")
-    turned = relation == "galilean" and key.coordinates == "body-spatial"
+    in_body = key.coordinates == "body-spatial" or key.scheme == "body-axes-midpoint"
+    turned = relation == "galilean" and in_body
     plan = [Steps(timestep, STEPS, 1)]
     own = companion(system, motion.first, key.scheme, yardstick.rate, plan, key.coordinates)[0]
     bounds = yardstick.round_off(timestep, np.arange(STEPS + 1.0), own.growth)
