@@ -12,7 +12,7 @@ from omegadot import fit, scenario
 from omegadot.commands.fit.print_fit import print_text
 from omegadot.commands.score.named_units import WORDS
 
-TIMES = np.linspace(0.0, 4.0, 201)
+TIMES = np.linspace(0.0, 4.0, 101)
 QUICK = ("--no-bias", "--no-damping")
 DEGREES = ("stamp_ms", "A", "B", "C")
 MAPPED = ("--column", "t=stamp_ms", "--column")
@@ -20,16 +20,16 @@ MAPPED = ("--column", "t=stamp_ms", "--column")
 
 def in_degrees(path: Path, names: tuple[str, ...] = DEGREES, noise: float = 0.0) -> Path:
     """A trace with times in ms and omega in deg/s. noise: rad/s."""
-    omega = states(Truth(), TIMES)[:, :3]
+    times = np.linspace(0.0, 4.0, 201) if noise else TIMES  # noise takes more samples
+    omega = states(Truth(), times)[:, :3]
     omega = omega + noise * np.random.default_rng(1).normal(size=omega.shape)
     rows = [f"{1e3 * t:.0f},{a:.6g},{b:.6g},{c:.6g}" for t, (a, b, c) in zip(
-        TIMES, np.rad2deg(omega), strict=True)]  # fmt: skip
+        times, np.rad2deg(omega), strict=True)]  # fmt: skip
     path.write_text("\n".join([",".join(names), *rows]) + "\n")
     return path
 
 
-@pytest.mark.parametrize("noise", [0.0, 1e-3])
-@pytest.mark.parametrize("terms", [(), QUICK])
+@pytest.mark.parametrize(("noise", "terms"), [(0.0, QUICK), (1e-3, ())])
 def test_rates_in_deg_s_that_are_read_in_rad_s_are_refused(tmp_path, capsys, noise, terms):
     """Caught: moments of almost a sphere with errors of a thousandth, of a trace in deg/s."""
     path, out = in_degrees(tmp_path / "imu.csv", noise=noise), tmp_path / "fitted.toml"
