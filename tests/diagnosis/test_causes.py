@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from omegadot.diagnosis.equations.wrong_equation import equation_causes
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
 from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
-from omegadot.diagnosis.stepping.vanishing.vanishing_steps import vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.diagnosis.wording.laws import law_of, power_laws
@@ -104,7 +105,8 @@ def test_damping_in_inverse_dynamics() -> None:
     assert "leave out what damping takes up" in text
 
 
-def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
+def steps_that_end(after: Callable[[State], State]) -> VanishingSteps:
+    """Of semi-implicit Euler, with something made of the end of each step."""
     one = CASES[1]
     states = random_states(one, 12, [1])
     rate = 4.0 * float(np.max(np.abs(states.angular_velocity))) + 1.0
@@ -112,29 +114,27 @@ def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
 
     def end(k: int, h: float) -> State:
         scheme = SCHEMES["semi-implicit-euler"]
-        after = step_body(scheme, one.system, states[k], h, 1, 1)[1][-1]
+        return after(step_body(scheme, one.system, states[k], h, 1, 1)[1][-1])
+
+    stepped = stack([stack([end(k, h) for h in steps[k]]) for k in range(12)])
+    return vanishing_steps(one.system, Probe(states, steps), stepped)
+
+
+def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
+    def held(after: State) -> State:
         speed = float(np.linalg.norm(after.linear_velocity))
         return replace(after, linear_velocity=after.linear_velocity * min(1.0, 0.5 / speed))
 
-    stepped = stack([stack([end(k, h) for h in steps[k]]) for k in range(12)])
-    found = jump_cause(vanishing_steps(one.system, Probe(states, steps), stepped))
-    assert found == "the linear velocity is held below 0.5 m/s"
+    assert jump_cause(steps_that_end(held)) == "the linear velocity is held below 0.5 m/s"
 
 
 def test_an_omega_in_fixed_point_is_one_of_whole_multiples() -> None:
     """Caught: "rounded to 8 decimals", which every multiple of 1/256 is."""
-    one = CASES[1]
-    states = random_states(one, 12, [1])
-    rate = 4.0 * float(np.max(np.abs(states.angular_velocity))) + 1.0
-    steps = np.full((12, 1), DOUBLE.radians / rate) / 2.0 ** np.arange(DOUBLE.count)
 
-    def end(k: int, h: float) -> State:
-        scheme = SCHEMES["semi-implicit-euler"]
-        after = step_body(scheme, one.system, states[k], h, 1, 1)[1][-1]
+    def fixed(after: State) -> State:
         return replace(after, angular_velocity=np.round(256.0 * after.angular_velocity) / 256.0)
 
-    stepped = stack([stack([end(k, h) for h in steps[k]]) for k in range(12)])
-    found = vanishing_steps(one.system, Probe(states, steps), stepped).rounded
+    found = steps_that_end(fixed).rounded
     assert found == "omega is rounded to multiples of 2^-8 in each step"
 
 

@@ -138,7 +138,7 @@ def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.Monke
 
 
 def test_single_precision_has_its_own_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Caught: an engine in single precision that is told that it steps nothing known."""
+    """Caught: an engine in single precision, of which it is stated that it steps nothing known."""
     monkeypatch.setattr(fingerprint, "FOLLOWING", ((0.02, 60, 20),))
     name, reference = "semi-implicit-euler-rescaled-momentum", ReferenceAdapter()
     integrator = next(i for i in reference.description.integrators if i.name == name)

@@ -132,7 +132,7 @@ class MjxAdapter:
 
 
 class MjxFloat32Adapter(MjxAdapter):
-    """MJX in single precision, as JAX computes unless it is told otherwise."""
+    """MJX in single precision, as JAX computes by default."""
 
     name = "mjx-float32"
     precision = "float32"
