@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import atexit
 import json
+import os
+import socket
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +35,67 @@ class Result:
 
 
 def omegadot(*arguments: object, folder: Path) -> Result:
-    """Run ``omegadot`` in `folder`."""
-    command = [*PROGRAM, *map(str, arguments)]
+    """Run ``omegadot`` in `folder`: as a fork of a process that has imported it, where one may.
+
+    What is wrong with the imports themselves is seen by the tests that start `PROGRAM`.
+    """
+    words = list(map(str, arguments))
+    if may_be_forked():
+        return forked("omegadot", words, folder)
+    command = [*PROGRAM, *words]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     return Result(done.returncode, done.stdout, done.stderr)
+
+
+def _environment() -> dict[str, str]:
+    return {name: text for name, text in os.environ.items() if not name.startswith("PYTEST_")}
+
+
+AT_START = _environment()
+
+
+def may_be_forked() -> bool:
+    """Not where coverage is measured, nor where the interpreter would start up otherwise."""
+    untraced = not any(name.startswith("COV") for name in AT_START)
+    return hasattr(os, "fork") and untraced and _environment() == AT_START
+
+
+@cache
+def _server() -> socket.socket:
+    """The channel to the process that forks, which ends when this one does, however it does."""
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    script, number = Path(__file__).with_name("serve_commands.py"), theirs.fileno()
+    command = [sys.executable, str(script), str(number)]
+    started = subprocess.Popen(
+        command,
+        pass_fds=[number],
+        env=AT_START,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+    )
+    theirs.close()
+    atexit.register(started.wait)
+    atexit.register(ours.close)  # first: the last registered is the first called
+    return ours
+
+
+def forked(program: str, words: list[str], folder: Path) -> Result:
+    """Run ``omegadot`` or ``pytest`` in `folder`, as a fork of a process that has imported it."""
+    channel = _server()
+    pipes = [os.pipe() for _ in range(2)]
+    message = {"program": program, "arguments": words, "folder": str(folder)}
+    socket.send_fds(channel, [json.dumps(message).encode()], [end for _, end in pipes])
+    for _, end in pipes:
+        os.close(end)
+    with ThreadPoolExecutor(2) as readers:
+        out, err = readers.map(_read, (end for end, _ in pipes))
+    return Result(int(channel.recv(16)), out, err)
+
+
+def _read(pipe: int) -> str:
+    """All that is written to it, by a command and whatever it has started."""
+    with open(pipe, encoding="utf-8") as text:
+        return text.read()
 
 
 QUICK = """

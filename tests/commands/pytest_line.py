@@ -9,7 +9,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from xml.etree import ElementTree
 
-from command_line import Result
+from command_line import Result, forked, may_be_forked
 
 PLUGIN = "omegadot.commands.check.pytest_plugin"
 
@@ -25,12 +25,22 @@ def pytest_command() -> list[str]:
     return [sys.executable, "-m", "pytest", *plugin_arguments()]
 
 
-def run_pytest(*arguments: object, folder: Path) -> Result:
-    """Run pytest in `folder`, without a cache there."""
-    command = [*pytest_command(), "-p", "no:cacheprovider", *map(str, arguments)]
+def run_pytest(*arguments: object, folder: Path, fresh: bool = False) -> Result:
+    """Run pytest in `folder`, without a cache there.
+
+    fresh: in an interpreter that has imported nothing yet.
+    """
+    words = ["-p", "no:cacheprovider", *map(str, arguments)]
+    if may_be_forked() and not fresh:
+        return forked("pytest", [*plugin_arguments(), *words], folder)
     environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
     done = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, check=False, env=environment
+        [*pytest_command(), *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
     )
     return Result(done.returncode, done.stdout, done.stderr)
 

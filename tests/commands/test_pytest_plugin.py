@@ -153,7 +153,7 @@ def test_other_peoples_pytest_is_left_alone(folder: Path) -> None:
         "    heavy = {'numpy', 'scipy', 'polars', 'typer', 'omegadot.harness'}\n"
         "    assert not heavy & set(sys.modules)\n"
     )
-    result = run_pytest("-p", "no:hypothesispytest", folder=folder)
+    result = run_pytest("-p", "no:hypothesispytest", folder=folder, fresh=True)
     assert result.code == 0, result.out
     assert "omegadot:" not in result.out
     helped = run_pytest("--help", folder=folder)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import os
+from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
@@ -25,13 +28,31 @@ DISABLED = {
 }
 
 
+_WINDOWS = "MUJOCO_GL"  # read by MuJoCo as it is imported
+
+
+@contextlib.contextmanager
+def _without_windows() -> Iterator[None]:
+    """No OpenGL in what is imported meanwhile, unless the user has chosen one."""
+    chosen = _WINDOWS in os.environ
+    os.environ.setdefault(_WINDOWS, "disable")
+    try:
+        yield
+    finally:
+        if not chosen:
+            del os.environ[_WINDOWS]
+
+
 def import_mujoco() -> Any:
     """MuJoCo, writing no MUJOCO_LOG.TXT into the current folder. Raises ImportError.
 
     Its own handler of warnings prints them and appends them to that file. Where no other is set,
     they are dropped: what they warn of is seen in the states.
+    Where it is imported here first, it draws nothing: what opens windows takes longer to import
+    than all the rest. MUJOCO_GL sets another.
     """
-    mujoco = importlib.import_module("mujoco")
+    with _without_windows():
+        mujoco = importlib.import_module("mujoco")
     if mujoco.get_mju_user_warning() is None:
         mujoco.set_mju_user_warning(lambda _: None)
     return mujoco
