@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -28,6 +29,7 @@ from omegadot.adapters.mujoco.model import (
     _nearest_to_identity,
     apply_setup,
     principal_frame,
+    without_windows,
 )
 from omegadot.adapters.protocol import Adapter, UnsupportedError
 from omegadot.reference_impl.inertia import lever, moving_inertia
@@ -54,6 +56,23 @@ def test_satisfies_the_protocol() -> None:
 def test_importing_the_adapter_leaves_mujoco_alone() -> None:
     code = "import sys, omegadot.adapters.mujoco.adapter; sys.exit('mujoco' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_no_window_is_imported_with_it() -> None:
+    """Caught: a worker that starts processes in search of a library of windows."""
+    code = (
+        "import os, sys; from omegadot.adapters.mujoco.model import import_mujoco; import_mujoco();"
+        "sys.exit('glfw' in sys.modules or 'MUJOCO_GL' in os.environ)"
+    )
+    without = {name: text for name, text in os.environ.items() if name != "MUJOCO_GL"}
+    assert subprocess.run([sys.executable, "-c", code], env=without, check=False).returncode == 0
+
+
+def test_a_choice_of_windows_is_the_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    with without_windows():
+        assert os.environ["MUJOCO_GL"] == "egl"
+    assert os.environ["MUJOCO_GL"] == "egl"
 
 
 def test_description_names_engine_and_what_was_switched_off() -> None:

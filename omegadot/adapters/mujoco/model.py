@@ -32,7 +32,7 @@ _WINDOWS = "MUJOCO_GL"  # read by MuJoCo as it is imported
 
 
 @contextlib.contextmanager
-def _without_windows() -> Iterator[None]:
+def without_windows() -> Iterator[None]:
     """No OpenGL in what is imported meanwhile, unless the user has chosen one."""
     chosen = _WINDOWS in os.environ
     os.environ.setdefault(_WINDOWS, "disable")
@@ -51,7 +51,7 @@ def import_mujoco() -> Any:
     Where it is imported here first, it draws nothing: what opens windows takes longer to import
     than all the rest. MUJOCO_GL sets another.
     """
-    with _without_windows():
+    with without_windows():
         mujoco = importlib.import_module("mujoco")
     if mujoco.get_mju_user_warning() is None:
         mujoco.set_mju_user_warning(lambda _: None)
