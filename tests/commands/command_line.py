@@ -47,17 +47,24 @@ def omegadot(*arguments: object, folder: Path) -> Result:
     return Result(done.returncode, done.stdout, done.stderr)
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
+    """What a command is started with: nothing of what pytest tells the programs of its tests."""
     return {name: text for name, text in os.environ.items() if not name.startswith("PYTEST_")}
 
 
-AT_START = _environment()
+def _read_at_start() -> dict[str, str]:
+    """Variables that the interpreter and the package read as they start; a fork has read them."""
+    first = ("PYTHON", "OMEGADOT", "LC_", "LANG", "COV")
+    return {name: text for name, text in os.environ.items() if name.startswith(first)}
+
+
+AT_START = _read_at_start()
 
 
 def may_be_forked() -> bool:
     """Not where coverage is measured, nor where the interpreter would start up otherwise."""
     untraced = not any(name.startswith("COV") for name in AT_START)
-    return hasattr(os, "fork") and untraced and _environment() == AT_START
+    return hasattr(os, "fork") and untraced and _read_at_start() == AT_START
 
 
 @cache
@@ -69,7 +76,7 @@ def _server() -> socket.socket:
     started = subprocess.Popen(
         command,
         pass_fds=[number],
-        env=AT_START,
+        env=environment(),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
     )
@@ -83,7 +90,8 @@ def forked(program: str, words: list[str], folder: Path) -> Result:
     """Run ``omegadot`` or ``pytest`` in `folder`, as a fork of a process that has imported it."""
     channel = _server()
     pipes = [os.pipe() for _ in range(2)]
-    message = {"program": program, "arguments": words, "folder": str(folder)}
+    message: dict[str, Any] = {"program": program, "arguments": words, "folder": str(folder)}
+    message["environment"] = environment()
     socket.send_fds(channel, [json.dumps(message).encode()], [end for _, end in pipes])
     for _, end in pipes:
         os.close(end)

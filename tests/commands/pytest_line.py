@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from importlib.metadata import entry_points
 from pathlib import Path
 from xml.etree import ElementTree
 
-from command_line import Result, forked, may_be_forked
+from command_line import Result, environment, forked, may_be_forked
 
 PLUGIN = "omegadot.commands.check.pytest_plugin"
 
@@ -33,14 +32,13 @@ def run_pytest(*arguments: object, folder: Path, fresh: bool = False) -> Result:
     words = ["-p", "no:cacheprovider", *map(str, arguments)]
     if may_be_forked() and not fresh:
         return forked("pytest", [*plugin_arguments(), *words], folder)
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
     done = subprocess.run(
         [*pytest_command(), *words],
         cwd=folder,
         capture_output=True,
         text=True,
         check=False,
-        env=environment,
+        env=environment(),
     )
     return Result(done.returncode, done.stdout, done.stderr)
 

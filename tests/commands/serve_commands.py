@@ -1,8 +1,8 @@
 """A process that has imported the package, and forks itself for each command line it is sent.
 
-A command has arguments, a folder and streams of its own, and ends as a program does. It is spared
-the imports, which take most of the processor time of a small command. Started as a script, with
-the number of its socket.
+A command has arguments, a folder, an environment and streams of its own, and ends as a program
+does. It is spared the imports, which take most of the processor time of a small command. Started
+as a script, with the number of its socket.
 """
 
 from __future__ import annotations
@@ -57,6 +57,8 @@ def run_command(received: dict[str, Any], streams: list[int]) -> None:
         os.dup2(stream, number)
         os.close(stream)
     os.chdir(received["folder"])
+    os.environ.clear()
+    os.environ.update(received["environment"])
     # As -c and -m have them.
     sys.path[0] = "" if received["program"] == "omegadot" else os.getcwd()
     sys.argv[:] = ["-c", *received["arguments"]]

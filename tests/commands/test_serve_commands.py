@@ -35,3 +35,11 @@ def test_nothing_is_forked_in_another_environment(monkeypatch: pytest.MonkeyPatc
     """Caught: an interpreter that has read PYTHONIOENCODING or OMEGADOT_EXTENDED before."""
     monkeypatch.setenv("PYTHONIOENCODING", "ascii")
     assert not may_be_forked()
+
+
+def test_a_fork_has_the_environment_of_now(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Caught: a command that sees what was set as the first one was forked."""
+    (tmp_path / "own.py").write_text("import os\nraise ValueError(os.environ['CARRIED'])\n")
+    for text in ("this", "that"):
+        monkeypatch.setenv("CARRIED", text)
+        assert f"ValueError: {text}" in forked("omegadot", ["check", "own.py:Own"], tmp_path).out
