@@ -5,6 +5,7 @@ failure. Choose with ``pytest --hypothesis-profile thorough``. Tests with settin
 them.
 """
 
+import gc
 from typing import Any
 
 import pytest
@@ -19,6 +20,15 @@ settings.register_profile(
     "mutation", derandomize=True, max_examples=30, deadline=None, phases=phases
 )
 settings.load_profile("ci")
+
+
+def pytest_collection_finish() -> None:
+    """What stays until the end, modules and some thousand tests, is not gone through again.
+
+    Every full collection of garbage would look at all of it.
+    """
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)
