@@ -8,11 +8,22 @@ from typing import Any
 
 import numpy as np
 import pytest
-from wrong_equations import CASES, EQUATIONS, PIVOT, case, gyroscopic, mirrored_center, with_torque
+from wrong_equations import (
+    BODY_TORQUE,
+    CASES,
+    EQUATIONS,
+    PIVOT,
+    WORLD_TORQUE,
+    case,
+    gyroscopic,
+    mirrored_center,
+    with_torque,
+)
 
 from omegadot.diagnosis.equations.across import Across, Scene
-from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics, of_inverse_dynamics
 from omegadot.diagnosis.equations.wrong_equation import equation_causes
+from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
 from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
@@ -23,7 +34,7 @@ from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
-from omegadot.reference_impl.loads import damping_torque
+from omegadot.reference_impl.loads import applied_torque, damping_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
@@ -103,6 +114,22 @@ def test_damping_in_inverse_dynamics() -> None:
     less = true - damping_torque(system, states)
     (text,) = torque_causes(system, states, requested, less)
     assert "leave out what damping takes up" in text
+
+
+def test_all_loads_that_inverse_dynamics_leave_out_are_one_cause() -> None:
+    """Where one of them acts alone, that it is left out fits as well, and not on the others."""
+    loads = ({"damping": 0.3}, {"torque": BODY_TORQUE}, {"damping": 0.3, "torque": WORLD_TORQUE})
+    found = WrongInverse()
+    for name, load in zip("abc", loads, strict=True):
+        one = case(name, load)
+        states = random_states(one, 60, [1])
+        requested = random_acceleration(one.system, states, [2])
+        given = damping_torque(one.system, states) + applied_torque(one.system, states)
+        torque = inverse_dynamics(one.system, states, requested) - given
+        found.add(name, of_inverse_dynamics(one.system, states, requested, torque))
+    assert {found.causes(name)[0] for name in "abc"} == {
+        "inverse dynamics leave out the loads that act: damping and torque"
+    }
 
 
 def steps_that_end(after: Callable[[State], State]) -> VanishingSteps:

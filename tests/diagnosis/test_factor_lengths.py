@@ -13,6 +13,7 @@ from wrong_equations import GRAVITY, PIVOT, case
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.turns.factor_lengths import other_lengths
+from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
@@ -108,3 +109,21 @@ def test_of_one_system_alone_it_is_either() -> None:
 def test_other_lengths_are_none_of_another_run(length: Length) -> None:
     """Right ones; in part ones; and a number that is added, as an armature's is."""
     assert statement("implicit-damping-euler", length) == ""
+
+
+@pytest.mark.parametrize("least", [1e-6, 1e-5])
+def test_steps_that_are_never_shorter_than_a_length_hold_omega_within_no_limit(
+    least: float,
+) -> None:
+    """Their ends jump, by less than what the steps are judged by, and in any direction."""
+    for one in CASES:
+        probe = probe_at(one.system, place_on_pivot(one.system, random_states(one, 12, [1])))
+        shape = (*probe.timesteps.shape, -1)
+        lanes = [
+            np.broadcast_to(f[:, None], (*shape[:-1], f.shape[-1]))
+            for f in vars(probe.states).values()
+        ]
+        how = (np.maximum(probe.timesteps, least), 1, 1, "com-world", body_motion(one.system))
+        _, after = step_body(SCHEMES["rk4-quaternion"], one.system, State(*lanes), *how)
+        steps = vanishing_steps(one.system, probe, after[-1])
+        assert "is held" not in jump_cause(steps)

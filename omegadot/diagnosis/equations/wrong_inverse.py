@@ -11,7 +11,7 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.equations.hypotheses.unsymmetric import of_whole
-from omegadot.diagnosis.equations.wrong_torque import fitting_torques
+from omegadot.diagnosis.equations.wrong_torque import fitting_torques, plainest
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -47,7 +47,7 @@ class WrongInverse:
                 with np.errstate(all="ignore"):
                     self._forms = _forms([one for one in self._evidence.values() if one.finite])
             common = self._forms
-        found = common or own
+        found = plainest(common or own)
         return either(found) if len(found) <= MOST_NAMED else []
 
     def _of(self, name: str) -> list[str]:

@@ -25,6 +25,7 @@ MOST_STEPS = 64  # between two samples
 SLACK = 4.0  # the start of an interval is rounded as its end is, and each of a sound run's as well
 LEAST = 3  # intervals that show a scheme
 MOST_LOOKED_AT = 4  # runs, sound and wrong, in which the scheme of an engine is looked for
+MOST_OTHERS = 16  # where these show none
 BEGINS = 0.5  # of a run, that its first interval is sound counts as much
 HALF_OF_DIGITS = 2.0**-26
 CHANNELS = ("omega", "attitude", "velocity", "position")
@@ -212,10 +213,21 @@ def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | Non
 
 
 def likeliest(runs: Sequence[KeptRun], least: int = LEAST) -> SchemeOf | None:
-    """The scheme by which most intervals of the runs are sound, of all that are known."""
+    """The scheme by which most intervals of the runs are sound, of all that are known.
+
+    Where none is seen in the runs that show most, it is looked for in others: what is wrong may act
+    on every step of the ones, and on no step of others.
+    """
     rich = sorted((run.short for run in runs), key=_richness, reverse=True)
     sound, failing = ([run for run in rich if run.fails is fails] for fails in (False, True))
-    shown = [*sound[:MOST_LOOKED_AT], *failing[:MOST_LOOKED_AT]]
+    best = _likeliest_by([*sound[:MOST_LOOKED_AT], *failing[:MOST_LOOKED_AT]], least)
+    if best is None and len(failing) > MOST_LOOKED_AT:
+        rest = failing[MOST_LOOKED_AT:]
+        best = _likeliest_by(rest[:: -(-len(rest) // MOST_OTHERS)], least)
+    return best
+
+
+def _likeliest_by(shown: Sequence[KeptRun], least: int) -> SchemeOf | None:
     best, most = None, 0.0
     for one in _schemes(shown):
         good = [_sound_where_known(run, one) for run in shown]

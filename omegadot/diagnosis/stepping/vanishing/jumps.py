@@ -209,6 +209,8 @@ def _limit(
                 else f"a limit within {written(near, 1)} {unit} of 0"
             )
             return f"{what} along {'xyz'[k]} is held {side} {limit}"
+    if np.mean(norm(now - was)[jumped] <= 10 * allowed[jumped]) >= 0.5:
+        return ""  # any limit next to the largest of them would do
     most = float(np.median(held[jumped]))
     scaled = was * np.minimum(1.0, most / np.where(size > 0.0, size, 1.0))[:, None]
     if np.all(norm(now - scaled) <= 10 * allowed):
