@@ -14,7 +14,7 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.states.equation import evaluation_states_of
 from omegadot.gates.steps.scheme import comparison_keys
 from omegadot.gates.truth import Companion, SchemeKey, StepSchemes, Truth, scheme_key
-from omegadot.harness.drive import INTERRUPTED, CaseResult
+from omegadot.harness.drive import INTERRUPTED, CaseResult, Driver
 from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
@@ -221,8 +221,11 @@ class Runner:
         case, truth = judged.case, judged.truth
         if truth is None:
             return judged
-        states = evaluation_states_of(case, truth, self.request.seed)
-        nudged = partial(request_nudged, states=states)
+
+        def nudged(driver: Driver, case: Case, found: EngineCase) -> None:
+            states = evaluation_states_of(case, truth, self.request.seed)
+            request_nudged(driver, case, found, states)
+
         decided = ((axes_may_decide, request_turned), (rounding_may_decide, nudged))
         for may_decide, request in decided:
             futures = []

@@ -123,8 +123,8 @@ def compare(
     found = changes(known, own)
     if not found:
         return PASSED
-    listed = "; ".join(change.sentence for change in found[:MOST_LISTED])
+    shown = "; ".join(change.sentence for change in found[:MOST_LISTED])
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     # A gate that fails has a cause of its own, and needs no guess besides.
     why = "" if failing else f" Probably {meaning(known, own, found, was.version == version)}."
-    return Result("fail", f"{versions}: {listed}{more}.{why} {advice[0].upper()}{advice[1:]}.")
+    return Result("fail", f"{versions}: {shown}{more}.{why} {advice[0].upper()}{advice[1:]}.")
