@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 
@@ -145,6 +146,20 @@ def _by_third_order(motion: Motion, q: Array, v: Array, h: float | Array) -> tup
     return motion.normalize(np.concatenate((places, turned), axis=-1)), v
 
 
+def _in_place(order: Sequence[int]) -> Step:
+    """Each component of omega by an omega-dot of those that have moved before it."""
+
+    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+        after = v + h * motion.acceleration(q, v)
+        after[..., -3:] = v[..., -3:]
+        for k in order:
+            rate = motion.acceleration(q, after)[..., -3:]
+            after[..., -3:] += np.where(np.arange(3) == k, h * rate, 0.0)
+        return motion.retract(q, h * after), after
+
+    return step
+
+
 # What states less comes first: on many bodies the velocity of translation is constant.
 EULER: dict[str, Step] = {
     "the attitude moves by the omega of the step's start": _old_omega,
@@ -156,6 +171,13 @@ EULER: dict[str, Step] = {
     "attitude and position move by the mean of the velocities before and after": _mean_velocity,
     "the attitude moves by one straight step of the quaternion, normalised": straight,
     "the turn of a step is taken by the third-order series of the exponential": _by_third_order,
+    **{
+        "omega is changed in place, its components in the order "
+        f"{', '.join('xyz'[k] for k in order)}: each with those that are new already": (
+            _in_place(order)
+        )
+        for order in permutations(range(3))
+    },
 }
 OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER, **tableau_slips()}
 # Their steps end with a quaternion that is made unit.
