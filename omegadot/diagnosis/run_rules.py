@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.lagging_fields import lagging_fields
 from omegadot.diagnosis.stepping.ends.last_samples import RunEnd
 from omegadot.diagnosis.stepping.ends.moved_samples import Moved, moved_samples
 from omegadot.diagnosis.stepping.ends.read_out import ReadOut, samples_read
@@ -83,6 +84,6 @@ KINDS: Mapping[str, Callable[[Integrator, KeptRuns], RunRule | None]] = {
     STARTS: lambda how, runs: other_start(how, runs.steps, runs.given, runs.kept),
     READ: lambda how, runs: samples_read(how, runs.steps, runs.given, runs.kept),
     ENDS: lambda how, runs: other_ends(how, runs.ends, runs.kept),
-    MOVED: lambda how, runs: moved_samples(how, runs.kept),
+    MOVED: lambda how, runs: moved_samples(how, runs.kept) or lagging_fields(how, runs.kept),
     LENGTHS: lambda how, runs: other_lengths(how, runs.steps, runs.kept, runs.requested),
 }

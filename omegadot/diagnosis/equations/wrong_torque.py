@@ -19,6 +19,7 @@ from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+WHOLE = 1e-9  # a share that is a whole number but for rounding
 # Of each load that acts: where one acts alone, this and that it is left out are one.
 LOADS_LEFT_OUT = "inverse dynamics leave out the loads that act: damping and torque"
 
@@ -70,7 +71,7 @@ def fitting_torques(
             axes = order_text(order, signs)
             found.append(f"inverse dynamics report the torque in other axes: {axes}")
     k = _share(torque, true, bound)
-    if k is not None and abs(k - 1.0) > 1e-9 and abs(k + 1.0) > 1e-9 and fits(k * true, k):
+    if k is not None and abs(k) != 1.0 and fits(k * true, k):
         found.append(f"inverse dynamics report the torque scaled by {factor(k)}")
     if any(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
         found.append(LOADS_LEFT_OUT)
@@ -97,25 +98,29 @@ def fitting_torques(
 
 
 def _share(rest: Array, term: Array, bound: Array) -> float | None:
-    line, off = np.ravel(term / bound[:, None]), np.ravel(rest / bound[:, None])
+    known = bound > 0.0  # at rest there may be no torque, of any size
+    line, off = (np.ravel(one[known] / bound[known, None]) for one in (term, rest))
     size = float(line @ line)
-    return float(off @ line) / size if size > 0.0 and np.isfinite(size) else None
+    if not (size > 0.0 and np.isfinite(size)):
+        return None
+    k = float(off @ line) / size
+    return float(round(k)) if abs(k - round(k)) < WHOLE else k  # its rounding may be that of a load
 
 
 def _worded(what: str, k: float) -> str:
     known = {0: f"leave out {what}", -1: f"have {what}'s sign wrong", 2: f"count {what} twice"}
-    if abs(k - round(k)) < 1e-9 and round(k) in known:
+    if k == round(k) and round(k) in known:
         return f"inverse dynamics {known[round(k)]}"
     return f"inverse dynamics have {what} scaled by {factor(k)}"
 
 
 def _load_worded(what: str, k: float) -> str:
     """Of a load that belongs to what is found, k times the torque that it exerts added to it."""
-    if abs(k + 1.0) < 1e-9:
+    if k == -1.0:
         return f"inverse dynamics leave out what {what} takes up: it is counted among what is given"
-    if abs(k - 1.0) < 1e-9:
+    if k == 1.0:
         return f"inverse dynamics count {what} on top of the torque that is found"
-    if abs(k + 2.0) < 1e-9:
+    if k == -2.0:
         return f"inverse dynamics count {what} twice among what is given"
     return f"inverse dynamics have {factor(k)} times {what} in them"
 

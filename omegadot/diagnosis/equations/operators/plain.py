@@ -25,11 +25,18 @@ def _repeated(count: int, v: Array) -> Array:
     return v[np.arange(len(v)) % count]
 
 
+def _beside(by: int, v: Array) -> Array:
+    """Of the state before or after; at the end there is none, and its own stays."""
+    return v[np.clip(np.arange(len(v)) + by, 0, len(v) - 1)]
+
+
 OF_OTHERS: dict[str, Callable[[Array], Array]] = {
     "that of the first state among those": lambda v: v[:1] + 0 * v,
     "that of the last state among those": lambda v: v[-1:] + 0 * v,
     "that of the state before among those": lambda v: np.roll(v, 1, axis=0),
     "that of the state after among those": lambda v: np.roll(v, -1, axis=0),
+    "that of the state before (the first has its own) among those": partial(_beside, -1),
+    "that of the state after (the last has its own) among those": partial(_beside, 1),
     "the mean over those": lambda v: np.mean(v, axis=0, keepdims=True) + 0 * v,
     **{
         f"that of the same place in the first {count} among those": partial(_repeated, count)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.vanishing.rests import LEAST, MOST_NAMED, SLEEPS, UNITS
 from omegadot.diagnosis.stepping.vanishing.sleep_chance import Law, odds_against
+from omegadot.diagnosis.stepping.vanishing.sleep_pairs import OMEGA, PAIR, SPEED, law_of_two
 from omegadot.diagnosis.stepping.vanishing.sleep_words import worded
 from omegadot.diagnosis.stepping.vanishing.spells import (
     MOST_IN_A_ROW,
@@ -89,18 +90,34 @@ def law_of_sleep(every: Sequence[Sleeps]) -> str:
         return ""
     with np.errstate(all="ignore"):
         counted, timed = _fits(spells, others, None), _fits(spells, others, _times(spells))
-    fits = _the_one(spells, counted, timed)
     apart = len({run.name for run, _ in others} - asleep)
+    texts = _of_one(spells, counted, timed, apart)
+    if not {OMEGA, SPEED} & texts.keys():  # with the right limit of one, any of the other holds
+        texts[""] = _of_two(spells, others, apart)
+    named = [text for text in texts.values() if text]
+    several = "either " * (len(named) > 1)
+    return f"{SLEEPS} where {several}{', or '.join(named)}" * (0 < len(named) <= MOST_NAMED)
+
+
+def _of_one(spells: Sequence[Spell], counted: Fits, timed: Fits, apart: int) -> dict[str, str]:
+    """By quantity, the law of a limit of this one alone."""
+    fits = _the_one(spells, counted, timed)
     tried = ODDS * (counted.tried + timed.tried)
     if fits is None or all(odds_against(one, spells, apart) < tried for one in fits.ends()):
-        return ""
-    texts = [
-        worded(name, fits.found[:, k], fits.low[:, k], fits.high[:, k], fits.times)
+        return {}
+    return {
+        name: worded(name, fits.found[:, k], fits.low[:, k], fits.high[:, k], fits.times)
         for k, name in enumerate(UNITS)
         if fits.found[:, k].any()
-    ]
-    several = "either " * (len(texts) > 1)
-    return f"{SLEEPS} where {several}{', or '.join(texts)}" * (len(texts) <= MOST_NAMED)
+    }
+
+
+def _of_two(spells: Sequence[Spell], others: Sequence[tuple[KeptRun, SchemeOf]], apart: int) -> str:
+    """The law of a limit of omega and one of the speed; the slowest of the other runs are looked at."""
+    slowest = sorted(others, key=lambda pair: float(np.min(np.max(sizes(pair[0])[PAIR], axis=0))))
+    stepped = [awake(run, by) for run, by in slowest[:MOST_STEPPED]]
+    known = [one for one in stepped if one is not None]
+    return law_of_two(spells, known, _fewest(spells), _times(spells), apart)
 
 
 def _fewest(spells: Sequence[Spell]) -> int:

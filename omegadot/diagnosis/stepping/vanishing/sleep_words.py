@@ -11,14 +11,23 @@ from omegadot.diagnosis.wording.digits import limits, number
 from omegadot.reference_impl.system import Array
 
 
-def worded(name: str, fits: NDArray[np.bool_], low: Array, high: Array, times: Array | None) -> str:
+def worded(
+    name: str,
+    fits: NDArray[np.bool_],
+    low: Array,
+    high: Array,
+    times: Array | None,
+    more: str = "",
+) -> str:
     """Of one quantity: fits, low and high (WAYS, N), by steps in a row or by these times in s.
+
+    more: what else is below a limit meanwhile.
 
     Whether the given state is counted is said where nothing else holds.
     """
     fit = np.flatnonzero(fits.any(0))
     limit = between(float(np.min(low[fits])), float(np.max(high[fits])), UNITS[name])
-    below = f"{name} is below a limit between {limit}"
+    below = f"{name} is below a limit between {limit}{more}"
     if times is None:
         return below + _in_a_row(fit + 1, with_given=not fits[0].any())
     ends = np.append(0.0, times)  # each second stands for what is between its neighbours

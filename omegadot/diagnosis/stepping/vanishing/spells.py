@@ -34,7 +34,7 @@ class Spell:
 
     Q: the quantities of `UNITS`.  N: from 1 on, how many steps in a row.  timestep: s.  fell: the
     step by which it falls asleep; 0 where it does not, and low is zero.  values: (Q, fell + 1) of
-    the given state and after each step, of one that falls asleep.  early: in how many fewer steps
+    the given state and after each step.  early: in how many fewer steps
     it may have fallen asleep.
     """
 
@@ -52,16 +52,17 @@ class Spell:
         A time that is a whole number of steps takes one more where rounding has it so. Of more
         steps than are counted nothing is known, but that the run has taken them.
         """
-        ratio, numbers = times / self.timestep, self._steps_of(times)
+        ratio, numbers = times / self.timestep, self.numbers_of(times)
         more = numbers + (np.abs(ratio - numbers) <= NEAR * ratio)
         (low, high), (lower, higher) = self._ends(numbers), self._ends(more)
         return np.minimum(low, lower), np.maximum(high, higher)
 
     def steps_of(self, time: float) -> int:
         """In a row, that last so many s or just longer, of those that are counted."""
-        return min(int(self._steps_of(np.array(time))), MOST_IN_A_ROW)
+        return min(int(self.numbers_of(np.array(time))), MOST_IN_A_ROW)
 
-    def _steps_of(self, times: Array) -> NDArray[np.intp]:
+    def numbers_of(self, times: Array) -> NDArray[np.intp]:
+        """How many steps last these times in s, or just longer."""
         return np.asarray(np.maximum(np.ceil(times / self.timestep * (1.0 - NEAR)), 1), dtype=int)
 
     def _ends(self, numbers: NDArray[np.intp]) -> tuple[Array, Array]:
@@ -174,7 +175,7 @@ def _spell(run: KeptRun, stepped: State, asleep: tuple[int, int] | None) -> Spel
             high[way, :, n] = np.min(most[:, : max(0, begin - steps)], axis=-1, initial=np.inf)
             low[way, :, n] = np.min(most[:, : max(0, end - steps + 1)], axis=-1, initial=np.inf)
     if asleep is None:
-        return Spell(run.name, run.timestep, np.zeros_like(low), high, 0, values[:, :0])
+        return Spell(run.name, run.timestep, np.zeros_like(low), high, 0, values)
     return Spell(run.name, run.timestep, low, high, end, values[:, : end + 1], end - begin)
 
 
