@@ -116,6 +116,17 @@ def test_damping_in_inverse_dynamics() -> None:
     assert "leave out what damping takes up" in text
 
 
+def test_a_state_at_rest_hides_no_cause_of_inverse_dynamics() -> None:
+    """There no torque is due, of any size: what is left out there has no share."""
+    system, states = CASES[2].system, random_states(CASES[2], 60, [1])
+    requested = random_acceleration(system, states, [2])
+    for field in (states.angular_velocity, states.linear_velocity, requested.angular):
+        field[0] = 0.0
+    less = inverse_dynamics(system, states, requested) - damping_torque(system, states)
+    (text,) = torque_causes(system, states, requested, less)
+    assert "leave out what damping takes up" in text
+
+
 def test_all_loads_that_inverse_dynamics_leave_out_are_one_cause() -> None:
     """Where one of them acts alone, that it is left out fits as well, and not on the others."""
     loads = ({"damping": 0.3}, {"torque": BODY_TORQUE}, {"damping": 0.3, "torque": WORLD_TORQUE})

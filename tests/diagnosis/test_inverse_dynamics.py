@@ -177,6 +177,12 @@ def at_first_omega(s: System, x: State, _: Acceleration) -> Array:
     return gyroscopic(s, replace(x, angular_velocity=w[:1] + 0.0 * w)) - gyroscopic(s, x)
 
 
+def at_omega_before(s: System, x: State, _: Acceleration) -> Array:
+    w = x.angular_velocity
+    before = replace(x, angular_velocity=np.concatenate((w[:1], w[:-1])))
+    return gyroscopic(s, before) - gyroscopic(s, x)
+
+
 def with_mean_momentum(s: System, x: State, _: Acceleration) -> Array:
     w = x.angular_velocity
     mean = np.mean(w, axis=0) @ np.asarray(moving_inertia(s)) + 0.0 * w
@@ -190,6 +196,11 @@ BATCHES: dict[str, tuple[More, str]] = {
     "first omega": (
         at_first_omega,
         "the gyroscopic term is that of the first state among those that are requested together",
+    ),
+    "omega before": (
+        at_omega_before,
+        "the gyroscopic term is that of the state before (the first has its own) among those that "
+        "are requested together",
     ),
 }
 

@@ -10,6 +10,7 @@ import pytest
 from test_over_runs import CASES, STEPS, euler, kept
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.lagging_fields import lagging_fields
 from omegadot.diagnosis.stepping.ends.moved_samples import moved_samples
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.reference_impl.schemes import SCHEMES, Motion
@@ -153,3 +154,45 @@ def test_steps_that_move_nothing_do_not_go_on() -> None:
         kept(one, lambda s, m, q, v, h, n: (q, v), h, every) for one in CASES for h, every in PLANS
     ]
     assert not any(run.goes_on(BY) for run in runs)
+
+
+def lagging(fields: tuple[str, ...], shift: int, scheme: str | None) -> str:
+    """Of runs of whose samples, but for the first, these fields are of another step."""
+    runs = list[KeptRun]()
+    for one in CASES:
+        whole = kept(one, step, 0.02, 1)
+        right = moved(whole, 2, lambda i: 0)
+        places = np.minimum(right.sweep.sample_steps + shift, len(whole.times) - 1)
+        places[0] = 0
+        state = replace(
+            right.state, **{name: getattr(whole.state, name)[places] for name in fields}
+        )
+        runs.append(replace(right, state=state, fails=True))
+    seen = lagging_fields(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
+    return "" if seen is None else seen.statement
+
+
+@pytest.mark.parametrize("scheme", [EULER, None])
+@pytest.mark.parametrize(
+    ("fields", "shift", "text"),
+    [
+        (
+            ("orientation", "position"),
+            -1,
+            "the attitude and position of every sample after the start are of the step before",
+        ),
+        (
+            ("angular_velocity",),
+            1,
+            "the omega of every sample after the start is of the step after",
+        ),
+        (("orientation",), 0, ""),
+        (("orientation",), -2, ""),
+    ],
+)
+def test_fields_that_lag_in_every_sample_are_named(
+    fields: tuple[str, ...], shift: int, text: str, scheme: str | None
+) -> None:
+    """Caught: "the attitude does not move in the first step", as such a sample makes it look."""
+    found = lagging(fields, shift, scheme).replace("is that of", "is of").replace("those of", "of")
+    assert found == (f"{text} its time" if text else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -176,6 +177,33 @@ def test_the_time_may_be_one_and_not_the_count() -> None:
     last = found.statement.partition(" for a time between ")[2].split()
     assert float(last[0]) <= 0.4 <= float(last[2])
     assert float(last[2]) - float(last[0]) < 0.1
+
+
+def by_both(_: System, states: State) -> NDArray[np.bool_]:
+    turns, moves = (
+        np.linalg.norm(v, axis=-1) for v in (states.angular_velocity, states.linear_velocity)
+    )
+    return np.asarray((turns < 0.17) & (moves < 0.1))
+
+
+@pytest.mark.parametrize("count", [3, 6])
+def test_two_limits_may_hold_at_once(count: int) -> None:
+    """Caught: no law, or one of a quantity that is small where both are."""
+    one = found(by_both, count)
+    assert one is not None
+    start = "the body is put to sleep where "
+    assert one.statement.startswith(start)
+    assert one.statement.endswith(f" in {count} steps in a row")
+    number = r"([-.\de]+)"
+    limits = re.search(
+        rf"\|omega\| is below a limit between {number} and {number} rad/s "
+        rf"and its speed is below one between {number} and {number} m/s",
+        one.statement,
+    )
+    assert limits is not None, one.statement
+    low, high, slow, fast = map(float, limits.groups())
+    assert low <= 0.17 <= high
+    assert slow <= 0.1 <= fast
 
 
 def test_a_body_that_moves_and_does_not_turn_falls_asleep_as_well() -> None:

@@ -16,10 +16,13 @@ from omegadot.harness.drive import CaseResult
 AGAIN = {
     "repeated": "the same steps, requested again, give other samples: something is left over from "
     "a run before, depends on how many steps are requested, or is drawn at random",
-    "reloaded": "a run depends on the system that was loaded before: something of it is left over",
+    "reloaded": "a run depends on the system that was loaded before: something of it is left over, "
+    "or the first run after a load is another than those after it",
     "negated": "a run from -q, requested after that from q, gives other samples: the sign of the "
     "first quaternion changes the run, or something is left over from a run before",
 }
+
+RELOADED = ", but the same run is another after another system was loaded in between"
 
 
 ONE_ALONE = "one state requested by itself is answered wrongly; the same among others is right"

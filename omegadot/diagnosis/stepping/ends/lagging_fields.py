@@ -36,8 +36,11 @@ class _Law:
     statement: str
 
 
+NOTHING = _Law((), 0, "")
+
+
 def lagging_fields(integrator: Integrator, kept: Sequence[KeptRun]) -> Moved | None:
-    """Which fields of every sample are of another step; None where one run has others, or none is."""
+    """Which fields of every sample are of another step; None where none are, or others in a run."""
     shown = _one_each([run for run in kept if run.fails])
     if len(shown) < LEAST or integrator.knob != "timestep":
         return None
@@ -45,6 +48,8 @@ def lagging_fields(integrator: Integrator, kept: Sequence[KeptRun]) -> Moved | N
     with np.errstate(all="ignore"):
         for by in _schemes(integrator):
             stepped = _stepped(shown[:LEAST], by)
+            if any(_is_made(run, own, NOTHING) for run, own in stepped):
+                continue
             for law in _laws():
                 if not all(_is_made(run, own, law) for run, own in stepped):
                     continue

@@ -113,7 +113,7 @@ def _of_one(spells: Sequence[Spell], counted: Fits, timed: Fits, apart: int) -> 
 
 
 def _of_two(spells: Sequence[Spell], others: Sequence[tuple[KeptRun, SchemeOf]], apart: int) -> str:
-    """The law of a limit of omega and one of the speed; the slowest of the other runs are looked at."""
+    """The law of a limit of omega and one of the speed; of other runs the slowest are looked at."""
     slowest = sorted(others, key=lambda pair: float(np.min(np.max(sizes(pair[0])[PAIR], axis=0))))
     stepped = [awake(run, by) for run, by in slowest[:MOST_STEPPED]]
     known = [one for one in stepped if one is not None]

@@ -94,7 +94,7 @@ def _windows(spell: Spell, way: int) -> Callable[[int], Array]:
 
     @cache
     def of(number: int) -> Array:
-        """(2, n): the largest of so many in a row, by where they begin; of too many nothing is known."""
+        """(2, n): the largest of so many in a row, by where they begin; of too many none."""
         if min(values.shape[1], MOST_IN_A_ROW) < number:
             return np.empty((2, 0))
         rows = np.lib.stride_tricks.sliding_window_view(values, number, axis=-1)
