@@ -8,7 +8,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from pytest_line import pytest_command
+from command_line import omegadot
+from pytest_line import run_pytest
 
 from omegadot.adapters.registry import OPTIONAL, is_absent
 from omegadot.scenarios import scenario_of
@@ -53,20 +54,13 @@ def commands() -> list[str]:
     return found
 
 
-def in_this_environment(command: str) -> list[list[str]]:
-    """The parts of a line joined by &&, with this interpreter's programs."""
-    found = []
+def run_line(command: str, folder: Path) -> None:
+    """The parts of a line joined by &&, by this interpreter's programs; each has to end well."""
     for part in command.split("&&"):
-        arguments = shlex.split(part)
-        program = arguments[0].removeprefix(".venv/bin/")
-        if program == "omegadot":
-            start = [sys.executable, "-c", "from omegadot.commands.cli import main; main()"]
-        elif program == "pytest":
-            start = pytest_command()
-        else:
-            start = [sys.executable, "-m", program]
-        found.append([*start, *arguments[1:]])
-    return found
+        program, *arguments = shlex.split(part)
+        run = {"omegadot": omegadot, "pytest": run_pytest}[program.removeprefix(".venv/bin/")]
+        done = run(*arguments, folder=folder)
+        assert done.code == 0, f"{command}\n{done.out}\n{done.err}"
 
 
 def test_the_two_commands_stand_at_the_top_and_in_ci() -> None:
@@ -106,9 +100,7 @@ def test_commands_run(command: str, workplace: Path) -> None:
     for name in filter(is_absent, OPTIONAL):
         if re.search(rf"\b{name}\b", command):
             pytest.skip(f"{name} is not installed")
-    for arguments in in_this_environment(command):
-        done = subprocess.run(arguments, cwd=workplace, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    run_line(command, workplace)
 
 
 @pytest.mark.parametrize(("name", "text"), blocks("toml"))
@@ -133,8 +125,7 @@ TYPED = [name for name in WITH_PYTHON if name != "add-an-engine.md"]
 def test_python_blocks_run(name: str, workplace: Path) -> None:
     text = script(name, "python")
     if "omegadot-run/" in text:  # what the first command of the README leaves
-        arguments = in_this_environment(".venv/bin/omegadot run sphere --engine mujoco")[0]
-        subprocess.run(arguments, cwd=workplace, capture_output=True, check=True)
+        run_line("omegadot run sphere --engine mujoco", workplace)
     done = subprocess.run(
         [sys.executable, "-c", text], cwd=workplace, capture_output=True, text=True, check=False
     )
