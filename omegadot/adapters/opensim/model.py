@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from omegadot.adapters.opensim.charts import Chart
-from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.system import Array, Body, System
 
 AXES = 3  # of a joint's coordinates the first ones turn
@@ -21,7 +20,6 @@ class OpenSimModel:
     """model, node (the body) and state are OpenSim's objects.
 
     driven: whether damping and torques act.
-    Raises UnsupportedError where OpenSim refuses the body.
     """
 
     def __init__(self, opensim: Any, system: System, chart: Chart, driven: bool = True) -> None:
@@ -29,11 +27,7 @@ class OpenSimModel:
         self.free = system.load.pivot is None
         self.model: Any = opensim.Model()
         self.model.setGravity(vec3(opensim, system.load.gravity))
-        try:
-            self.node: Any = self._body()
-        except RuntimeError as error:
-            reason = " ".join(str(error).split())
-            raise UnsupportedError(f"OpenSim refuses this body: {reason}") from error
+        self.node: Any = self._body()
         self._joint: Any = self._held()
         if driven:
             self._drive()
@@ -75,7 +69,7 @@ class OpenSimModel:
             if np.any(torque):
                 acting = opensim.PrescribedForce(f"torque_{frame}", self.node)
                 acting.set_forceIsGlobal(frame == "world")
-                for each in torque:  # setTorqueFunctions would free what Python frees as well
+                for each in torque:  # cloned: setTorqueFunctions leaves its own to Python to free
                     acting.updTorqueFunctions().cloneAndAppend(opensim.Constant(float(each)))
                 self.model.addForce(acting)
 
