@@ -233,3 +233,48 @@ def test_it_describes_itself() -> None:
     }
     assert native["defaults"]["Manager integrator"] == "RungeKuttaMerson"
     assert native["defaults"]["gravity"] == "(0, -9.80665, 0)"
+
+
+def on_a_ball_joint(opensim: Any, damping: str) -> tuple[Any, Any, Any]:
+    """A sphere of inertia 1 on a joint that is damped by 0.3 N m s: model, state and joint.
+
+    The state is the model's, and is gone with it.
+    """
+    model, none = opensim.Model(), opensim.Vec3(0.0)
+    model.setGravity(none)
+    body = opensim.Body("body", 1.0, none, opensim.Inertia(1.0, 1.0, 1.0))
+    model.addBody(body)
+    joint = opensim.BallJoint("joint", model.getGround(), body)
+    model.addJoint(joint)
+    if damping == "bushing":
+        bushing = opensim.BushingForce("bushing", model.getGround(), body)
+        bushing.set_rotational_damping(opensim.Vec3(0.3))
+        model.addForce(bushing)
+    for n in range(3 if damping == "springs" else 0):
+        spring = opensim.SpringGeneralizedForce(joint.get_coordinates(n).getName())
+        spring.setName(f"spring_{n}")
+        spring.setStiffness(0.0)
+        spring.setRestLength(0.0)
+        spring.setViscosity(0.3)
+        model.addForce(spring)
+    state = model.initSystem()
+    y = np.zeros(state.getNY())
+    y[:7] = 0.4, 1.0, 0.3, 0.0, 1.0, 2.0, 3.0
+    state.setY(opensim.Vector.createFromMat(y))
+    model.realizeAcceleration(state)
+    return model, state, joint
+
+
+def test_a_coordinates_speed_is_omega_and_a_bushing_damps_the_rates_of_angles() -> None:
+    """Caught: damping by a bushing, which speeds up a turn about an axis at some attitudes."""
+    engine, omega = OpenSimAdapter()._engine, np.array([1.0, 2.0, 3.0])
+    sprung, state, joint = on_a_ball_joint(engine, "springs")
+    speeds = [joint.get_coordinates(n).getSpeedValue(state) for n in range(3)]
+    assert np.array_equal(speeds, omega)
+    rates = state.getQDot().to_numpy()[:3]
+    assert norm(rates - turning(np.array([0.4, 1.0, 0.3]), omega)) <= 64 * EPS * norm(rates)
+    assert norm(rates - omega) > 1.0
+    assert norm(state.getUDot().to_numpy() + 0.3 * omega) <= 64 * EPS
+    held, damped, _ = on_a_ball_joint(engine, "bushing")
+    assert damped.getUDot().to_numpy()[0] > 0.6
+    del sprung, held
