@@ -84,10 +84,10 @@ class OpenSimModel:
 
         Of the system, with the body's axes along the ground's.
         """
-        free = 13 if self.free else 7
-        upright = np.zeros(free)
+        upright = np.zeros(self.state.getNY())
         upright[:AXES] = self.chart.angles_of(np.array([1.0, 0.0, 0.0, 0.0]))
-        state, matter = self.put(upright), self.model.getMatterSubsystem()
+        state, matter = self._opensim.State(self.state), self.model.getMatterSubsystem()
+        state.setY(self._opensim.Vector.createFromMat(upright))
         self.model.realizePosition(state)
         held = matter.calcSystemCentralInertiaInGround(state)
         products, moments = array(held.getProducts()), array(held.getMoments())
