@@ -36,6 +36,7 @@ THIRD_PARTY = {
         "pydrake",
         "exudyn",
         "Basilisk",
+        "opensim",
         "jax",
     },
     "workers/engine_end": {"numpy", "scipy"},
@@ -125,7 +126,7 @@ def test_lower_rooms_stay_small(room: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk", "jax"]
+    "engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk", "opensim", "jax"]
 )
 def test_engines_are_imported_in_functions_only(engine: str) -> None:
     for file in files_of("adapters"):

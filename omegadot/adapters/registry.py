@@ -34,6 +34,7 @@ EXTRAS: dict[str, str] = {
     "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
     "exudyn": "omegadot.adapters.exudyn.adapter:ExudynAdapter",
     "basilisk": "omegadot.adapters.basilisk.adapter:BasiliskAdapter",
+    "opensim": "omegadot.adapters.opensim.adapter:OpenSimAdapter",
     "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
 }
@@ -49,6 +50,7 @@ _MODULES = {
     "drake": ("pydrake",),
     "exudyn": ("exudyn",),
     "basilisk": ("Basilisk",),
+    "opensim": ("opensim",),
     "mjx": ("jax", "mujoco.mjx"),
 }
 

@@ -129,6 +129,7 @@ PACKAGES = {
     "mujoco": "mujoco",
     "drake": "pydrake",
     "exudyn": "exudyn",
+    "opensim": "opensim",
     "mjx": "jax",
 }
 

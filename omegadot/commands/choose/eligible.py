@@ -20,6 +20,7 @@ PACKAGES = {
     "drake": "drake",
     "exudyn": "exudyn",
     "basilisk": "bsk",
+    "opensim": "opensim",
     "mjx": "mujoco-mjx",
     "mjx-float32": "mujoco-mjx",
 }

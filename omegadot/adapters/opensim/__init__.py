@@ -1,0 +1,1 @@
+"""OpenSim behind the protocol."""
