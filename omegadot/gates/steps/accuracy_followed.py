@@ -15,6 +15,7 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, ROTATION
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
 from omegadot.gates.steps.accuracy import (
@@ -29,7 +30,8 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
-LEAST_SLOPE, MOST_SLOPE = 0.5, 2.0
+# Steps of order 1 go with the root of the accuracy, and their error as far as an order shows.
+LEAST_SLOPE, MOST_SLOPE = 0.5 * (1.0 - ORDER_TOLERANCE), 2.0
 SATURATED = 0.5  # rad, or of the size of omega
 CLEAR_OF_ROUNDING = 10.0  # rounding is then a tenth of an error at most
 HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
