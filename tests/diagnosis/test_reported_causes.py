@@ -69,6 +69,15 @@ def test_a_centre_of_mass_that_is_added_wrongly_is_a_way_to_misread_a_place(
     assert np.allclose(way.right(reported).position, states.position, rtol=0.0, atol=1e-14)
 
 
+def test_a_last_time_on_the_grid_of_the_samples_is_named() -> None:
+    """Caught: that it alone is off, by another number in each run."""
+    sweep = Sweep(0.0371234567, 41, 4)
+    whole = np.append(sweep.times[:-1], 44 * sweep.timestep)
+    text = "the last time is a whole interval after the one before, though fewer steps lead to it"
+    assert clock_cause(whole, sweep, EPS) == text
+    assert "alone is off" in clock_cause(whole + np.append(np.zeros(11), 1e-3), sweep, EPS)
+
+
 @pytest.mark.parametrize("name", CLOCKS)
 def test_the_fault_of_a_clock_is_named(name: str) -> None:
     change, phrase = CLOCKS[name]

@@ -16,6 +16,9 @@ from omegadot.written import written
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
 GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}
 SAME = 1e-9  # relative, of a factor that is looked for
+WHOLE_INTERVAL = (
+    "the last time is a whole interval after the one before, though fewer steps lead to it"
+)
 COARSE = ("times are off by", "the times are whole")
 FACTORS = ("every time is too", "every time is scaled by")
 EPS_SINGLE = float(np.finfo(np.float32).eps)
@@ -133,6 +136,9 @@ def _off(late: Array, sweep: Sweep) -> str:
         if place < len(late) - 1:
             which = f"one time, that of sample {place},"
         due, came = float(sweep.times[place]), float(sweep.times[place] + late[place])
+        whole = place * sweep.every * sweep.timestep
+        if place == len(late) - 1 and abs(came - whole) <= clock_rounding(sweep):
+            return WHOLE_INTERVAL
         near = came if abs(came - due) < due else None  # far from it, no more digits are needed
         return f"{which} alone is off: {number(came, due)} s, where {number(due, near)} s was due"
     largest = float(np.max(np.abs(late)))
