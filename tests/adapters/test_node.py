@@ -29,7 +29,8 @@ STEP, STEPS = 0.01, 20
 EPS = {"cannon-es": float(np.finfo(float).eps)}
 SINGLE = float(np.finfo(np.float32).eps)
 FEW = 64  # roundings in a row of about twenty operations on three components
-SUBSTEPS = {"jolt-physics": 1, "rapier3d-compat": 4}
+SUBSTEPS = {"jolt-physics": 1, "physx-js-webidl": 1, "rapier3d-compat": 4}
+PUSHED_FIRST = {"physx-js-webidl", "rapier3d-compat"}
 TURNED = State(np.array([1.0, 0, 0, 0]), np.array([0.4, 2.0, -0.7]), np.zeros(3), np.zeros(3))
 
 
@@ -162,13 +163,13 @@ def test_what_is_not_there_is_refused(engine: CommandAdapter) -> None:
 
 @pytest.mark.parametrize("name", SUBSTEPS)
 @pytest.mark.parametrize("timestep", [STEP, 10 * STEP])
-def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
+def test_three_engines_turn_the_angular_momentum_and_keep_its_length(
     name: str, timestep: float
 ) -> None:
     """``L1 = (L - h omega x L) |L| / |L - h omega x L|``, then torque, then Jolt's exponential.
 
-    Rapier does so in four substeps, after torque, and with a straight step of the quaternion. What
-    torque adds to omega stays in world axes meanwhile. Caught: a torque in the wrong axes, a tensor
+    PhysX has torque first. Rapier does so in four substeps, after torque, and with a straight step
+    of the quaternion. What torque adds to omega stays in world axes meanwhile. Caught: a torque in the wrong axes, a tensor
     that is not turned, an engine that steps something else than its note states, and at the longer
     step the other engine's turn.
     """
@@ -186,7 +187,7 @@ def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
         push = rotate(q, np.linalg.solve(inertia, felt))
         for _ in range(SUBSTEPS[name]):
             pushed = h * rotate(q * [1, -1, -1, -1], push)
-            first = pushed if SUBSTEPS[name] > 1 else 0.0
+            first = pushed if name in PUSHED_FIRST else 0.0
             momentum = inertia @ (w + first)
             turned = momentum - h * cross(w + first, momentum)
             turned *= norm(momentum) / norm(turned)
@@ -206,13 +207,17 @@ def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
 
 @pytest.mark.parametrize("name", SUBSTEPS)
 @pytest.mark.parametrize("h", [0.01, 0.001])
-def test_jolt_and_rapier_step_the_schemes_they_declare(name: str, h: float) -> None:
+def test_three_engines_step_the_schemes_they_declare(name: str, h: float) -> None:
     """Over 1000 steps, as far as single precision lets a run be followed.
 
-    Caught: one step in the place of four substeps, a push that turns with the body meanwhile.
+    PhysX declares none where a torque acts. Caught: one step in the place of four substeps, a push that turns with the body meanwhile.
     """
     loads = Load(GRAVITY, torque_world=np.array([0.1, 0, 0.1]), torque_body=np.array([0, 0.05, 0]))
     requested, adapter, steps = replace(system("full"), load=loads), built(name), 1000
+    if name == "physx-js-webidl":
+        adapter.load(requested)
+        assert adapter.description.integrators[0].scheme is None
+        requested = replace(requested, load=Load(GRAVITY))
     start = at(states(1, seed=4, far=1.0, fast=2.0), 0)
     adapter.load(requested)
     (integrator,) = adapter.description.integrators
@@ -235,16 +240,18 @@ def test_jolt_and_rapier_step_the_schemes_they_declare(name: str, h: float) -> N
 
 
 def test_what_they_declare() -> None:
-    """Jolt as shipped has no gyroscopic force, and is damped."""
-    declared = {
-        (name, setup): built(name, setup).description.integrators[0].scheme
-        for name in ENGINES
-        for setup in ("physics", "as-shipped")
-    }
+    """Without torque. Jolt and PhysX as shipped have no gyroscopic force, and are damped."""
+    declared: dict[tuple[str, str], str | None] = {}
+    for name in ENGINES:
+        for setup in ("physics", "as-shipped"):
+            adapter = built(name, setup)
+            adapter.load(of([1.0, 2.0, 2.5]))
+            declared[name, setup] = adapter.description.integrators[0].scheme
     rescaled = "semi-implicit-euler-rescaled-momentum"
     substeps = f"{rescaled}-four-substeps"
     assert {key: scheme for key, scheme in declared.items() if scheme} == {
         ("jolt-physics", "physics"): rescaled,
+        ("physx-js-webidl", "physics"): rescaled,
         ("rapier3d-compat", "physics"): substeps,
         ("rapier3d-compat", "as-shipped"): substeps,
     }
@@ -270,32 +277,42 @@ def test_cannon_has_no_gyroscopic_term() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "factor"), [("cannon-es", 0.99**STEP), ("jolt-physics", 1 - 0.05 * STEP)]
+    ("name", "factor"),
+    [
+        ("cannon-es", 0.99**STEP),
+        ("jolt-physics", 1 - 0.05 * STEP),
+        ("physx-js-webidl", 1 - 0.05 * STEP),
+    ],
 )
 def test_as_shipped_they_slow_a_body_down(name: str, factor: float) -> None:
-    """Neither has a gyroscopic term there: omega keeps its direction in world axes."""
+    """None has a gyroscopic term there: omega keeps its direction in world axes."""
     for setup, kept in (("as-shipped", factor), ("physics", 1.0)):
         adapter = built(name, setup)
-        adapter.load(of([2.0, 2.0, 2.0]))
-        found = adapter.run(TURNED, "step", STEP, 1, 1).state[-1].angular_velocity
+        adapter.load(of([1.0, 2.0, 2.5]) if setup == "as-shipped" else of([2.0, 2.0, 2.0]))
+        end = adapter.run(TURNED, "step", STEP, 1, 1).state[-1]
+        found = rotate(end.orientation, end.angular_velocity)
         assert norm(found - kept * TURNED.angular_velocity) <= FEW * SINGLE * norm(found)
 
 
-def test_as_shipped_jolt_turns_no_faster_than_its_limit() -> None:
-    """It is limited when it is set, and slowed down afterwards."""
-    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 100.0]))
-    limit = 0.25 * np.pi * 60 * (1 - 0.05 * STEP)
-    for setup, most in (("as-shipped", limit), ("physics", 100.0)):
-        adapter = built("jolt-physics", setup)
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [("jolt-physics", 0.25 * np.pi * 60 * (1 - 0.05 * STEP)), ("physx-js-webidl", 100.0)],
+)
+def test_as_shipped_they_turn_no_faster_than_their_limit(name: str, limit: float) -> None:
+    """Jolt's omega is limited when it is set, and slowed down afterwards; PhysX's in the step."""
+    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 200.0]))
+    for setup, most in (("as-shipped", limit), ("physics", 200.0)):
+        adapter = built(name, setup)
         adapter.load(of([2.0, 2.0, 2.0]))
         found = adapter.run(fast, "step", STEP, 1, 1).state[-1].angular_velocity
         assert abs(found[2] - most) <= FEW * SINGLE * most
 
 
-def test_as_shipped_rapier_puts_a_slow_body_to_sleep() -> None:
-    slow = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 0.04]))
+@pytest.mark.parametrize(("name", "spin"), [("physx-js-webidl", 1e-3), ("rapier3d-compat", 0.04)])
+def test_as_shipped_they_put_a_slow_body_to_sleep(name: str, spin: float) -> None:
+    slow = replace(TURNED, angular_velocity=np.array([0.0, 0.0, spin]))
     for setup, moves in (("as-shipped", False), ("physics", True)):
-        adapter = built("rapier3d-compat", setup)
+        adapter = built(name, setup)
         adapter.load(of([2.0, 2.0, 2.0]))
         found = adapter.run(slow, "step", 0.02, 200, 200).state[-1].angular_velocity
         assert bool(found.any()) is moves

@@ -19,6 +19,7 @@ ENGINES = {
     "cannon-es": "cannon-es",
     "rapier3d-compat": "@dimforge/rapier3d-compat",
     "jolt-physics": "jolt-physics",
+    "physx-js-webidl": "physx-js-webidl",
 }
 """The package of each engine."""
 
