@@ -29,3 +29,8 @@ def jolt_physics(setup: Setup) -> str:
 def physx_js_webidl(setup: Setup) -> str:
     """PhysX in WebAssembly, in single precision."""
     return command_of("physx-js-webidl")
+
+
+def havok(setup: Setup) -> str:
+    """Havok in WebAssembly, in single precision."""
+    return command_of("havok")

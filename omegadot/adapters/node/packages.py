@@ -20,6 +20,7 @@ ENGINES = {
     "rapier3d-compat": "@dimforge/rapier3d-compat",
     "jolt-physics": "jolt-physics",
     "physx-js-webidl": "physx-js-webidl",
+    "havok": "@babylonjs/havok",
 }
 """The package of each engine."""
 
