@@ -34,3 +34,8 @@ def physx_js_webidl(setup: Setup) -> str:
 def havok(setup: Setup) -> str:
     """Havok in WebAssembly, in single precision."""
     return command_of("havok")
+
+
+def ammo(setup: Setup) -> str:
+    """Bullet in JavaScript, in single precision."""
+    return command_of("ammo")

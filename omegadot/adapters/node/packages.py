@@ -21,6 +21,7 @@ ENGINES = {
     "jolt-physics": "jolt-physics",
     "physx-js-webidl": "physx-js-webidl",
     "havok": "@babylonjs/havok",
+    "ammo": "ammo.js",
 }
 """The package of each engine."""
 
