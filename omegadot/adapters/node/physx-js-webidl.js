@@ -75,7 +75,7 @@ function description(opened, setup, driven) {
     links: [
       'https://github.com/fabmax/physx-js-webidl',
       'https://github.com/NVIDIA-Omniverse/PhysX',
-      'https://nvidia-omniverse.github.io/PhysX/physx/5.6.1/docs/RigidBodyDynamics.html',
+      'https://nvidia-omniverse.github.io/PhysX/physx/5.6.1/index.html',
     ],
   };
 }
