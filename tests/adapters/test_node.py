@@ -29,7 +29,9 @@ STEP, STEPS = 0.01, 20
 EPS = {"cannon-es": float(np.finfo(float).eps)}
 SINGLE = float(np.finfo(np.float32).eps)
 FEW = 64  # roundings in a row of about twenty operations on three components
-SUBSTEPS = {"jolt-physics": 1, "rapier3d-compat": 4}
+SUBSTEPS = {"jolt-physics": 1, "physx-js-webidl": 1, "rapier3d-compat": 4}
+PUSHED_FIRST = {"physx-js-webidl", "rapier3d-compat"}
+WITHOUT_TORQUE = {"ammo", "physx-js-webidl"}  # their steps are a scheme there alone
 TURNED = State(np.array([1.0, 0, 0, 0]), np.array([0.4, 2.0, -0.7]), np.zeros(3), np.zeros(3))
 
 
@@ -162,15 +164,15 @@ def test_what_is_not_there_is_refused(engine: CommandAdapter) -> None:
 
 @pytest.mark.parametrize("name", SUBSTEPS)
 @pytest.mark.parametrize("timestep", [STEP, 10 * STEP])
-def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
+def test_three_engines_turn_the_angular_momentum_and_keep_its_length(
     name: str, timestep: float
 ) -> None:
     """``L1 = (L - h omega x L) |L| / |L - h omega x L|``, then torque, then Jolt's exponential.
 
-    Rapier does so in four substeps, after torque, and with a straight step of the quaternion. What
-    torque adds to omega stays in world axes meanwhile. Caught: a torque in the wrong axes, a tensor
-    that is not turned, an engine that steps something else than its note states, and at the longer
-    step the other engine's turn.
+    PhysX has torque first. Rapier does so in four substeps, after torque, and with a straight step
+    of the quaternion. What torque adds to omega stays in world axes meanwhile. Caught: a torque in
+    the wrong axes, a tensor that is not turned, an engine that steps something else than its note
+    states, and at the longer step another engine's turn.
     """
     torque, own = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.1, 0.2])
     requested = system("full")
@@ -186,7 +188,7 @@ def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
         push = rotate(q, np.linalg.solve(inertia, felt))
         for _ in range(SUBSTEPS[name]):
             pushed = h * rotate(q * [1, -1, -1, -1], push)
-            first = pushed if SUBSTEPS[name] > 1 else 0.0
+            first = pushed if name in PUSHED_FIRST else 0.0
             momentum = inertia @ (w + first)
             turned = momentum - h * cross(w + first, momentum)
             turned *= norm(momentum) / norm(turned)
@@ -204,15 +206,20 @@ def test_jolt_and_rapier_turn_the_angular_momentum_and_keep_its_length(
     assert norm(found.linear_velocity - v) <= bound * norm(v)
 
 
-@pytest.mark.parametrize("name", SUBSTEPS)
+@pytest.mark.parametrize("name", ["ammo", *SUBSTEPS])
 @pytest.mark.parametrize("h", [0.01, 0.001])
-def test_jolt_and_rapier_step_the_schemes_they_declare(name: str, h: float) -> None:
+def test_they_step_the_schemes_they_declare(name: str, h: float) -> None:
     """Over 1000 steps, as far as single precision lets a run be followed.
 
-    Caught: one step in the place of four substeps, a push that turns with the body meanwhile.
+    PhysX and Bullet declare none where a torque acts. Caught: one step in the place of four
+    substeps, a push that turns with the body meanwhile.
     """
     loads = Load(GRAVITY, torque_world=np.array([0.1, 0, 0.1]), torque_body=np.array([0, 0.05, 0]))
     requested, adapter, steps = replace(system("full"), load=loads), built(name), 1000
+    if name in WITHOUT_TORQUE:
+        adapter.load(requested)
+        assert adapter.description.integrators[0].scheme is None
+        requested = replace(requested, load=Load(GRAVITY))
     start = at(states(1, seed=4, far=1.0, fast=2.0), 0)
     adapter.load(requested)
     (integrator,) = adapter.description.integrators
@@ -221,7 +228,7 @@ def test_jolt_and_rapier_step_the_schemes_they_declare(name: str, h: float) -> N
     times, own = step_body(scheme, requested, start, h, steps, 10)
     rate = float(np.max(norm(own.angular_velocity)))
     # each substep rounds the state, and what it leaves grows with the motion
-    lost = FEW * SINGLE * SUBSTEPS[name] * np.maximum(times / h, 1)
+    lost = FEW * SINGLE * SUBSTEPS.get(name, 1) * np.maximum(times / h, 1)
     grown = lost * growth_along(requested, times, own, rate)
     assert np.all(norm(found.angular_velocity - own.angular_velocity) <= grown * rate)
     assert np.all(attitude_angle(found.orientation, own.orientation) <= grown)
@@ -235,16 +242,20 @@ def test_jolt_and_rapier_step_the_schemes_they_declare(name: str, h: float) -> N
 
 
 def test_what_they_declare() -> None:
-    """Jolt as shipped has no gyroscopic force, and is damped."""
-    declared = {
-        (name, setup): built(name, setup).description.integrators[0].scheme
-        for name in ENGINES
-        for setup in ("physics", "as-shipped")
-    }
+    """Without torque. Jolt and PhysX as shipped have no gyroscopic force, and are damped."""
+    declared: dict[tuple[str, str], str | None] = {}
+    for name in ENGINES:
+        for setup in ("physics", "as-shipped"):
+            adapter = built(name, setup)
+            adapter.load(of([1.0, 2.0, 2.5]))
+            declared[name, setup] = adapter.description.integrators[0].scheme
     rescaled = "semi-implicit-euler-rescaled-momentum"
     substeps = f"{rescaled}-four-substeps"
     assert {key: scheme for key, scheme in declared.items() if scheme} == {
+        ("ammo", "physics"): "linearly-implicit-euler",
+        ("ammo", "as-shipped"): "linearly-implicit-euler",
         ("jolt-physics", "physics"): rescaled,
+        ("physx-js-webidl", "physics"): rescaled,
         ("rapier3d-compat", "physics"): substeps,
         ("rapier3d-compat", "as-shipped"): substeps,
     }
@@ -269,36 +280,147 @@ def test_cannon_has_no_gyroscopic_term() -> None:
     assert norm(rotate(found.orientation, found.angular_velocity) - w) <= bound * norm(w)
 
 
+@pytest.mark.parametrize("timestep", [STEP, 10 * STEP])
+def test_bullet_solves_for_the_gyroscopic_term_alone(timestep: float) -> None:
+    """``w1 = w - (1 - h J)^-1 h I^-1 (w x I w) + h I^-1 t``, ``J = -I^-1 (w x I - (I w) x)``.
+
+    Caught: a torque that is solved for as well, as the reference's scheme has it.
+    """
+    own, torque = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.1, 0.2])
+    requested, adapter = system("full"), built("ammo")
+    requested = replace(requested, load=Load(GRAVITY, torque_world=torque, torque_body=own))
+    adapter.load(requested)
+    start = at(states(1, seed=3, far=1.0, fast=2.0), 0)
+    found = adapter.run(start, "step", timestep, 1, 1).state[-1]
+    inertia, (q, w, p, v) = requested.body.inertia, parts(start)
+    momentum = inertia @ w
+    slope = cross(w, inertia.T).T - cross(momentum, np.eye(3)).T  # columns are w x I e - (I w) x e
+    solved = np.linalg.solve(inertia + timestep * slope, cross(w, momentum))
+    push = np.linalg.solve(inertia, own + rotate(q * [1, -1, -1, -1], torque))
+    w = w + timestep * (push - solved)
+    assert norm(found.angular_velocity - w) <= FEW * SINGLE * norm(w)
+    turned = quaternion_product(q, exponential(timestep * w))
+    assert attitude_angle(found.orientation, turned) <= FEW * SINGLE
+    v = v + timestep * GRAVITY
+    assert norm(found.linear_velocity - v) <= FEW * SINGLE * norm(v)
+    assert norm(found.position - p - timestep * v) <= FEW * SINGLE * norm(p)
+
+
+def test_bullet_loses_the_gyroscopic_term_of_small_bodies() -> None:
+    """Where the product of the moments is below single precision's rounding, in whatever unit."""
+    adapter = built("ammo")
+    for product, there in ((1.5, True), (0.9, False)):
+        size = (product * SINGLE / 5) ** (1 / 3)
+        moments = size * np.array([1.0, 2.0, 2.5])
+        adapter.load(of(list(moments)))
+        w = TURNED.angular_velocity
+        found = adapter.run(TURNED, "step", 1e-3, 1, 1).state[-1].angular_velocity
+        change = -1e-3 * cross(w, moments * w) / moments
+        # a step of order 1, of some 2e-3 rad
+        assert norm(found - w - (change if there else 0.0)) <= 1e-2 * norm(change)
+
+
+def test_bullet_turns_a_body_too_little_beyond_an_eighth_of_a_turn_in_a_step() -> None:
+    """By ``2 atan(4 r / pi tan(pi/8))`` in place of r: the setup physics refuses to go on there."""
+    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 0.3 * np.pi / STEP]))
+    shipped, adapter = built("ammo", "as-shipped"), built("ammo")
+    shipped.load(of([2.0, 2.0, 2.0]))
+    adapter.load(of([2.0, 2.0, 2.0]))
+    found = shipped.run(fast, "step", STEP, 1, 1).state.orientation
+    turn = 2 * np.arctan(1.2 * np.tan(np.pi / 8))
+    assert abs(attitude_angle(found[1], found[0]) - turn) <= FEW * SINGLE
+    assert adapter.run(fast, "step", STEP / 2, 1, 1).state.orientation.shape == (2, 4)
+    with pytest.raises(UnsupportedError, match="beyond 45 degrees in a step"):
+        adapter.run(fast, "step", STEP, 1, 1)
+
+
+@pytest.mark.parametrize("timestep", [STEP, 10 * STEP])
+def test_havok_has_no_gyroscopic_term(timestep: float) -> None:
+    """``w1 = w + h R I^-1 R^T t`` in world axes, turn ``h w1``, ``x1 = x + h v + 5/8 h^2 g``.
+
+    I^-1 has 8 bits: each principal moment's inverse is off by 2^-8 at most. Caught: moments that
+    are not given for a mass of 1 kg.
+    """
+    own, torque = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.1, 0.2])
+    requested, adapter = system("full"), built("havok")
+    requested = replace(requested, load=Load(GRAVITY, torque_world=torque, torque_body=own))
+    adapter.load(requested)
+    start = at(states(1, seed=3, far=1.0, fast=2.0), 0)
+    found = adapter.run(start, "step", timestep, 1, 1).state[-1]
+    q, w, p, v = parts(start)
+    back = q * [1, -1, -1, -1]
+    push = np.linalg.solve(requested.body.inertia, own + rotate(back, torque))
+    turn = rotate(q, w + timestep * push)
+    # some sixty roundings, and the push with its 8 bits
+    lost = FEW * SINGLE * norm(turn) + timestep * norm(push) * 2**-8
+    assert norm(rotate(found.orientation, found.angular_velocity) - turn) <= lost
+    turned = quaternion_product(exponential(timestep * turn), q)
+    assert attitude_angle(found.orientation, turned) <= FEW * SINGLE + timestep * lost
+    assert norm(found.linear_velocity - v - timestep * GRAVITY) <= FEW * SINGLE * norm(v)
+    fallen = p + timestep * v + 0.625 * timestep**2 * GRAVITY
+    assert norm(found.position - fallen) <= FEW * SINGLE * (norm(p) + norm(v))
+
+
+def test_havok_brakes_slow_bodies() -> None:
+    """By 0.31 m/s^2 below 0.1 m/s, in either setup; faster ones go on."""
+    for setup in ("physics", "as-shipped"):
+        adapter = built("havok", setup)
+        adapter.load(of([2.0, 2.0, 2.0]))
+        for speed, kept in ((0.05, 0.0), (0.2, 0.2)):
+            start = replace(TURNED, linear_velocity=np.array([speed, 0.0, 0.0]))
+            found = adapter.run(start, "step", STEP, 20, 20).state[-1].linear_velocity
+            assert abs(found[0] - kept) <= FEW * SINGLE
+
+
 @pytest.mark.parametrize(
-    ("name", "factor"), [("cannon-es", 0.99**STEP), ("jolt-physics", 1 - 0.05 * STEP)]
+    ("name", "factor"),
+    [
+        ("cannon-es", 0.99**STEP),
+        ("havok", 1 - 0.1 * STEP),
+        ("jolt-physics", 1 - 0.05 * STEP),
+        ("physx-js-webidl", 1 - 0.05 * STEP),
+    ],
 )
 def test_as_shipped_they_slow_a_body_down(name: str, factor: float) -> None:
-    """Neither has a gyroscopic term there: omega keeps its direction in world axes."""
+    """None has a gyroscopic term there: omega keeps its direction in world axes."""
     for setup, kept in (("as-shipped", factor), ("physics", 1.0)):
         adapter = built(name, setup)
-        adapter.load(of([2.0, 2.0, 2.0]))
-        found = adapter.run(TURNED, "step", STEP, 1, 1).state[-1].angular_velocity
+        adapter.load(of([1.0, 2.0, 2.5]) if setup == "as-shipped" else of([2.0, 2.0, 2.0]))
+        end = adapter.run(TURNED, "step", STEP, 1, 1).state[-1]
+        found = rotate(end.orientation, end.angular_velocity)
         assert norm(found - kept * TURNED.angular_velocity) <= FEW * SINGLE * norm(found)
 
 
-def test_as_shipped_jolt_turns_no_faster_than_its_limit() -> None:
-    """It is limited when it is set, and slowed down afterwards."""
-    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 100.0]))
-    limit = 0.25 * np.pi * 60 * (1 - 0.05 * STEP)
-    for setup, most in (("as-shipped", limit), ("physics", 100.0)):
-        adapter = built("jolt-physics", setup)
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [
+        ("havok", 100.0 * (1 - 0.1 * STEP)),
+        ("jolt-physics", 0.25 * np.pi * 60 * (1 - 0.05 * STEP)),
+        ("physx-js-webidl", 100.0),
+    ],
+)
+def test_as_shipped_they_turn_no_faster_than_their_limit(name: str, limit: float) -> None:
+    """Omega is limited when it is set, and slowed down afterwards; PhysX's in the step."""
+    fast = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 200.0]))
+    for setup, most in (("as-shipped", limit), ("physics", 200.0)):
+        adapter = built(name, setup)
         adapter.load(of([2.0, 2.0, 2.0]))
         found = adapter.run(fast, "step", STEP, 1, 1).state[-1].angular_velocity
         assert abs(found[2] - most) <= FEW * SINGLE * most
 
 
-def test_as_shipped_rapier_puts_a_slow_body_to_sleep() -> None:
-    slow = replace(TURNED, angular_velocity=np.array([0.0, 0.0, 0.04]))
+@pytest.mark.parametrize(
+    ("name", "spin"),
+    [("ammo", 0.04), ("havok", 1e-3), ("physx-js-webidl", 1e-3), ("rapier3d-compat", 0.04)],
+)
+def test_as_shipped_they_put_a_slow_body_to_sleep(name: str, spin: float) -> None:
+    """Caught: a body that has its omega, and does not turn."""
+    slow = replace(TURNED, angular_velocity=np.array([0.0, 0.0, spin]))
     for setup, moves in (("as-shipped", False), ("physics", True)):
-        adapter = built("rapier3d-compat", setup)
+        adapter = built(name, setup)
         adapter.load(of([2.0, 2.0, 2.0]))
-        found = adapter.run(slow, "step", 0.02, 200, 200).state[-1].angular_velocity
-        assert bool(found.any()) is moves
+        found = adapter.run(slow, "step", 0.02, 400, 200).state.orientation
+        assert bool(np.any(found[1] != found[2])) is moves
 
 
 def test_as_shipped_jolt_takes_no_small_moments() -> None:

@@ -150,7 +150,7 @@ def test_one_component_in_another_unit_is_refused(tmp_path, capsys):
         ((*MAPPED, "--name", "a\x1b[31m"), "a name of printable characters"),
         (
             (*MAPPED, "--with", "bullet3"),
-            "--with bullet3: no such engine; choose basilisk, cannon-es",
+            "--with bullet3: no such engine; choose ammo, basilisk",
         ),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),

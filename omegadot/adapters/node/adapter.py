@@ -24,3 +24,18 @@ def rapier3d_compat(setup: Setup) -> str:
 def jolt_physics(setup: Setup) -> str:
     """Jolt in WebAssembly, in single precision."""
     return command_of("jolt-physics")
+
+
+def physx_js_webidl(setup: Setup) -> str:
+    """PhysX in WebAssembly, in single precision."""
+    return command_of("physx-js-webidl")
+
+
+def havok(setup: Setup) -> str:
+    """Havok in WebAssembly, in single precision."""
+    return command_of("havok")
+
+
+def ammo(setup: Setup) -> str:
+    """Bullet in JavaScript, in single precision."""
+    return command_of("ammo")

@@ -19,6 +19,9 @@ ENGINES = {
     "cannon-es": "cannon-es",
     "rapier3d-compat": "@dimforge/rapier3d-compat",
     "jolt-physics": "jolt-physics",
+    "physx-js-webidl": "physx-js-webidl",
+    "havok": "@babylonjs/havok",
+    "ammo": "ammo.js",
 }
 """The package of each engine."""
 

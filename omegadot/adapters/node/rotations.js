@@ -14,6 +14,12 @@ function rotated(q, v) {
   return v.map((x, i) => x + scale * (w * u[i] + again[i]));
 }
 
+// The rotation of b, then that of a.
+function product([a, ...u], [b, ...v]) {
+  const turned = cross(u, v);
+  return [a * b - u[0] * v[0] - u[1] * v[1] - u[2] * v[2], ...turned.map((x, i) => x + a * v[i] + b * u[i])];
+}
+
 const conjugate = ([w, x, y, z]) => [w, -x, -y, -z];
 
 // The matrix R diag(moments) R^T, with R the rotation of q.
@@ -65,4 +71,4 @@ function quaternionOf([x, y, z]) {
   return unscaled.map((value) => value / length);
 }
 
-module.exports = { conjugate, principal, rotated, turnedDiagonal };
+module.exports = { conjugate, principal, product, rotated, turnedDiagonal };

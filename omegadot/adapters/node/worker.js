@@ -2,9 +2,10 @@
 // package.
 //
 // ENGINE.js exports `open(folder)`, which gives the engine's API, and makes of it
-//   description(api, setup)            what docs/worker-protocol.md requires of `describe`, but for the
+//   description(api, setup, driven)    what docs/worker-protocol.md requires of `describe`, but for the
 //                                      version; an integrator has one order in all channels, and
-//                                      a scheme where the reference has it
+//                                      a scheme where the reference has it; driven: whether a
+//                                      torque acts on the body that is loaded
 //   refused(body)                      why it cannot take a body, or ''
 //   World(api, setup, body, gravity)   a world with the body, anew for each run:
 //     put(state), state()              a state is { q, w, p, v }, all in world axes, p and v of the
@@ -30,7 +31,11 @@ class Server {
 
   describe({ setup }) {
     this.setup = setup;
-    const { integrators, ...rest } = this.engine.description(this.api, setup);
+    return this.described(false);
+  }
+
+  described(driven) {
+    const { integrators, ...rest } = this.engine.description(this.api, this.setup, driven);
     this.known = { version: this.version, ...rest, integrators: integrators.map(withOrders) };
     return this.known;
   }
@@ -48,7 +53,7 @@ class Server {
     this.inWorld = load.torque_world.some((x) => x !== 0) ? load.torque_world : null;
     this.world?.free();
     this.world = this.made();
-    return null;
+    return this.described(Boolean(this.inBody || this.inWorld));
   }
 
   made() {
