@@ -36,9 +36,10 @@ from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
 from omegadot.reference_impl.loads import applied_torque, damping_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
-from omegadot.reference_impl.system import Acceleration, State, System
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
 def causes_over(found: Any, cases: tuple[Case, ...] = CASES) -> dict[str, str]:
@@ -127,20 +128,50 @@ def test_a_state_at_rest_hides_no_cause_of_inverse_dynamics() -> None:
     assert "leave out what damping takes up" in text
 
 
-def test_all_loads_that_inverse_dynamics_leave_out_are_one_cause() -> None:
-    """Where one of them acts alone, that it is left out fits as well, and not on the others."""
-    loads = ({"damping": 0.3}, {"torque": BODY_TORQUE}, {"damping": 0.3, "torque": WORLD_TORQUE})
-    found = WrongInverse()
-    for name, load in zip("abc", loads, strict=True):
+BOTH_TORQUES = {"torque": [BODY_TORQUE, WORLD_TORQUE]}
+
+
+def of_world(system: System, states: State) -> Array:
+    return rotate_inverse(states.orientation, system.load.torque_world)
+
+
+@pytest.mark.parametrize(
+    ("taken", "loads", "text"),
+    [
+        (
+            lambda system, states: damping_torque(system, states) + applied_torque(system, states),
+            [{"damping": 0.3}, {"torque": BODY_TORQUE}, {"damping": 0.3} | BOTH_TORQUES],
+            "leave out the loads that act: damping and torque",
+        ),
+        (
+            applied_torque,
+            [{"torque": WORLD_TORQUE}, BOTH_TORQUES],
+            "leave out what the applied torque takes up: it is counted among what is given",
+        ),
+        (
+            of_world,
+            [{"torque": WORLD_TORQUE}, BOTH_TORQUES],
+            "leave out what the torque in world axes takes up: it is counted among what is given",
+        ),
+        (
+            of_world,
+            [{"torque": WORLD_TORQUE}],
+            "leave out what the applied torque takes up: it is counted among what is given",
+        ),
+    ],
+)
+def test_what_inverse_dynamics_leave_out_on_several_scenarios_is_one_cause(
+    taken: Callable[[System, State], Array], loads: list[dict[str, Any]], text: str
+) -> None:
+    """Where one of the loads acts alone, several fit, which the other scenarios tell apart."""
+    found, names = WrongInverse(), [f"scenario-{k}" for k in range(len(loads))]
+    for name, load in zip(names, loads, strict=True):
         one = case(name, load)
         states = random_states(one, 60, [1])
         requested = random_acceleration(one.system, states, [2])
-        given = damping_torque(one.system, states) + applied_torque(one.system, states)
-        torque = inverse_dynamics(one.system, states, requested) - given
+        torque = inverse_dynamics(one.system, states, requested) - taken(one.system, states)
         found.add(name, of_inverse_dynamics(one.system, states, requested, torque))
-    assert {found.causes(name)[0] for name in "abc"} == {
-        "inverse dynamics leave out the loads that act: damping and torque"
-    }
+    assert {tuple(found.causes(name)) for name in names} == {(f"inverse dynamics {text}",)}
 
 
 def steps_that_end(after: Callable[[State], State]) -> VanishingSteps:

@@ -21,6 +21,8 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 WHOLE = 1e-9  # a share that is a whole number but for rounding
 # Of each load that acts: where one acts alone, this and that it is left out are one.
+APPLIED = "the applied torque"
+PARTS = ("the torque in body axes", "the torque in world axes")
 LOADS_LEFT_OUT = "inverse dynamics leave out the loads that act: damping and torque"
 
 
@@ -33,8 +35,15 @@ def torque_causes(
 
 
 def plainest(found: list[str]) -> list[str]:
-    """Without what states more than another of these, which fits as well."""
-    return [text for text in found if text != LOADS_LEFT_OUT] or found
+    """Without what states more, or is about a part, where another of these fits as well.
+
+    A torque in one frame is the applied torque where there is none in the other.
+    """
+    found = [text for text in found if text != LOADS_LEFT_OUT] or found
+    of_parts = {
+        text: text.replace(part, APPLIED) for text in found for part in PARTS if part in text
+    }
+    return [text for text in found if of_parts.get(text) not in found]
 
 
 def fitting_torques(
@@ -53,8 +62,13 @@ def fitting_torques(
     }
     loads: dict[str, Array] = {
         "damping": damping_torque(system, states),
-        "the applied torque": applied_torque(system, states),
+        APPLIED: applied_torque(system, states),
     }
+    of_frames = (
+        system.load.torque_body,
+        rotate_inverse(states.orientation, system.load.torque_world),
+    )
+    parts = {what: 0.0 * w + torque for what, torque in zip(PARTS, of_frames, strict=True)}
 
     def fits(candidate: Array, times: float = 1.0) -> bool:
         return bool(np.all(norm(torque - candidate) <= SLACK * max(1.0, abs(times)) * bound))
@@ -79,7 +93,7 @@ def fitting_torques(
         k = _share(torque - true, term, bound)
         if k is not None and fits(true + k * term):
             found.append(_worded(what, 1.0 + k))
-    for what, term in loads.items():
+    for what, term in (*loads.items(), *parts.items()):
         k = _share(torque - true, term, bound)
         if k is not None and fits(true + k * term):
             found.append(_load_worded(what, k))
