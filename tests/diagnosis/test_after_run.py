@@ -129,9 +129,11 @@ def old_start(
     return start, own, start.angular_velocity, h
 
 
-def cause(engine: ReferenceAdapter, case: object, name: str = EULER) -> str:
+def cause(engine: ReferenceAdapter, case: object, *names: str) -> str:
+    """names: of integrators, of which the first is looked at."""
     requests = Requests(driver_of("wrong", engine))
-    integrators = [i for i in engine.description.integrators if i.name == name]
+    known = {i.name: i for i in engine.description.integrators}
+    integrators = [known[name] for name in names or (EULER,)]
     assert case in CASES
     one = next(c for c in CASES if c is case)
     seen = after_runs(requests, one, integrators, random_states(one, 4, [1]), EPS, 3)
@@ -166,14 +168,14 @@ def test_what_is_taken_is_named(name: str, case: object) -> None:
 
 
 class FirstStage(ReferenceAdapter):
-    """RK4 whose first stage has the omega-dot that the run before evaluated last."""
+    """Schemes whose first stage has the omega-dot that the run before evaluated last."""
 
     kept: Array | None = None
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        assert (every, integrator) == (1, RK4)
+        assert every == 1
         system, stale = self.system, self.kept
 
         def acceleration(state: State) -> Acceleration:
@@ -186,7 +188,7 @@ class FirstStage(ReferenceAdapter):
 
         motion = motion_over(system, "com-world", acceleration)
         how = (timestep, steps, every, "com-world", motion)
-        return Trajectory(*step_body(SCHEMES[RK4], system, initial, *how))
+        return Trajectory(*step_body(SCHEMES[integrator], system, initial, *how))
 
 
 @pytest.mark.parametrize("case", [FREE, DAMPED], ids=lambda case: case.name)
@@ -197,6 +199,16 @@ def test_what_the_last_stage_has_left_over_is_named(case: object) -> None:
         "for a part of 0.1667 (the first stage of RK4), the first step of a run takes the "
         "omega-dot at the last stage of the run before in place of its own"
     )
+
+
+@pytest.mark.parametrize(("name", "other"), [(EULER, RK4), (RK4, EULER)])
+def test_what_is_left_over_is_so_after_another_integrator_s_run(name: str, other: str) -> None:
+    """Caught: "but not of another integrator", whose last omega-dot is of another place."""
+    found = cause(FirstStage(), DAMPED, name, other)
+    assert (
+        "the first step of a run takes the omega-dot that was evaluated last in the run before in "
+        "place of its own, also of another integrator"
+    ) in found
 
 
 def test_a_torque_is_told_from_omega_dot() -> None:

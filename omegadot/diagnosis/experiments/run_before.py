@@ -18,14 +18,12 @@ from omegadot.harness.requests.repeats import OTHERS
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.one_body.body_motion import motion_over
-from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State
 
 STEPS = 3  # of the run before: its start, the start of its last step and its end are three states
 LONG = 16.0  # times the longest of the probe's steps: an eighth of a radian
-SAME = 1e-9  # rad
 OF_ANOTHER, AFTER_LOAD = "of another integrator", "of another system, loaded in between"
 
 
@@ -98,7 +96,7 @@ def _after(
 
 
 def _last_evaluated(before: _Before, path: State) -> State | None:
-    """Where a declared scheme takes its last rates in the run; None of a state on the path."""
+    """Where a declared scheme takes its last rates in the run; None where that is not known."""
     scheme, how = SCHEMES.get(before.integrator.scheme or ""), before.integrator.coordinates
     system, seen = before.case.system, list[State]()
     if scheme is None or how not in scheme.coordinates:
@@ -111,10 +109,8 @@ def _last_evaluated(before: _Before, path: State) -> State | None:
     motion = motion_over(system, how, acceleration)
     step_body(scheme, system, path[-2], before.h, 1, 1, how, motion)
     last = seen[-1]
-    if last.orientation.shape != path.orientation[-1].shape:
-        return None  # many states at once, for a derivative
-    attitudes = (attitude_angle(last.orientation, q) for q in path.orientation)
-    return None if any(angle <= SAME for angle in attitudes) else last
+    # many states at once are for a derivative
+    return last if last.orientation.shape == path.orientation[-1].shape else None
 
 
 def _ends(

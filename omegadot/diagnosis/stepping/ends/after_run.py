@@ -14,10 +14,12 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
 from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.written import written
 
+SAME = 1e-9  # rad
 OWN = "the same integrator, of the same system"
 CLOSE = 1e-6  # relative: what the extrapolation of a step to none is known to at least
 WHOLE = 1e-6  # a part that is all of it
@@ -34,7 +36,7 @@ class AfterRun:
     kind: of the run before.  system and path (n + 1,): that run's, and its states before a step of
     no length.  each: the path before each of the steps, and the end of this step; the last is the
     shortest.  steps: (1,), from the state.  same_step: the end of a step as long as those before.
-    evaluated: where that run's scheme takes its last rates, if that is no state on the path.
+    evaluated: where that run's scheme takes its last rates, if it is known.
     """
 
     kind: str
@@ -46,9 +48,19 @@ class AfterRun:
     evaluated: State | None = None
 
     def at(self, place: str) -> State | None:
-        """The state at one of PLACES."""
+        """The state at one of PLACES; None where it is not known, or has another name."""
         index = PLACES[place]
-        return self.evaluated if index is None else self.path[index]
+        if index is not None:
+            return self.path[index]
+        return None if place == STAGE and self.ends_on_path else self.evaluated
+
+    @property
+    def ends_on_path(self) -> bool:
+        """Whether the last rates are taken at a state on the path."""
+        if self.evaluated is None:
+            return False
+        attitudes = (attitude_angle(self.evaluated.orientation, q) for q in self.path.orientation)
+        return any(angle <= SAME for angle in attitudes)
 
     def rate_off(self, channel: str) -> tuple[Array, Array, float]:
         """How far a rate of the first steps is off (3,), the right one, and the bound of both."""
@@ -58,11 +70,13 @@ class AfterRun:
         return off, limit.expected[0], SLACK * float(bound[0])
 
 
+STAGE, LAST = "at the last stage of", "that was evaluated last in"
 PLACES: dict[str, int | None] = {  # of a run, as the place of a state on its path
     "at the start of": 0,
     "at the start of the last step of": -2,
     "at the end of": -1,
-    "at the last stage of": None,
+    STAGE: None,
+    LAST: None,  # of whatever integrator
 }
 # Of the first stage of a step, in schemes of several.
 WEIGHTS = {1 / 6: "RK4", 1 / 8: "the 3/8 rule", 1 / 4: "Heun's third-order scheme"}
@@ -170,6 +184,8 @@ def _of_rate(
 
     With the number of kinds of runs before that it is so after, and whether it is the whole.
     """
+    if place == LAST and len({one.ends_on_path for one in seen}) < 2:
+        return  # it has a name of its own
     states = [(one, one.at(place)) for one in seen]
     rows = [
         (one.kind, *one.rate_off(channel), _other(one, quantity, torque, state))
