@@ -52,10 +52,11 @@ def test_what_to_look_at_first_comes_first(record: Record) -> None:
     """Caught: by raw size alone, the last gate of the last engine stands at the top."""
     rows, left = shown(failing(record))
     assert left == 0
+    others = "omega observed order, omega unexplained"
     assert [(row.verdict, row.engine, row.gate, row.measure) for row in rows] == [
         ("fail", "mujoco 1.0", "trajectory", "attitude error max"),
         ("fail", "dart 1.0", "equation", "omega-dot residual"),
-        ("fail", "dart 1.0", "scheme", "attitude unexplained and 2 more"),
+        ("fail", "dart 1.0", "scheme", f"attitude unexplained; also {others}"),
         ("fail", "dart 1.0", "trajectory", "attitude error max"),
         ("declared", "dart 1.0", "model", "inertia"),
     ]
@@ -115,7 +116,7 @@ def test_what_is_no_number_is_the_worst(record: Record, value: float | None) -> 
     )
     (first,), _ = shown(with_metrics(record, *rows))
     assert (first.measure, first.size) == (
-        "attitude distance from the scheme and 1 more",
+        "attitude distance from the scheme; also omega distance from the scheme",
         "no number",
     )
 

@@ -17,10 +17,11 @@ from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.reasons import cause_of
 from omegadot.reports.summary.summary import Column, column_of
 from omegadot.reports.text.metric_names import measure_name, metric_name
-from omegadot.reports.text.numbers import engine_name, knob, quantity, times
+from omegadot.reports.text.numbers import engine_name, first, knob, quantity, times
 
 MOST = 40  # rows on the page; every engine has its share of them, and three at least
 _FEWEST = 3
+MOST_BESIDE = 2  # measures of a row that are named beside its worst
 _RUN = ("integrator", "timestep", "accuracy")
 Row = Mapping[str, Any]
 
@@ -29,8 +30,8 @@ Row = Mapping[str, Any]
 class Failure:
     """A gate of an engine that fails on a scenario, or that fails as declared.
 
-    measure and size: its worst measure, with how many others there are; how many times its bound
-    that is.  cause: the likely one, where it is known.  run: the worst, with how many there are.
+    measure and size: its worst measure, with others; how many times its bound that is.  cause: the
+    likely one, where it is known.  run: the worst, with how many there are.
     """
 
     verdict: str
@@ -118,8 +119,9 @@ def _failure(
     measures = {(row["channel"], row["metric"]) for row in rows}
     stepped = [row for row in rows if row["timestep"] or row["accuracy"]]  # no order of a sweep
     runs = {tuple(row[key] for key in _RUN) for row in stepped}
-    others = f" and {len(measures) - 1} more" if len(measures) > 1 else ""
-    measure = measure_name(channel_name(worst["channel"]), metric_name(worst["metric"]))
+    names = {one: measure_name(channel_name(one[0]), metric_name(one[1])) for one in measures}
+    measure = names.pop((worst["channel"], worst["metric"]))
+    others = f"; also {first(sorted(set(names.values())), MOST_BESIDE)}" if names else ""
     run = (worst["integrator"], knob(worst["timestep"], worst["accuracy"]))
     count = times(len(runs), "run") if runs else ""
     key = (worst["scenario"], *_engine_of(worst), *(worst[name] for name in _RUN))

@@ -126,7 +126,8 @@ The project's own code of the Newton–Euler equations and of every scheme. It a
 
 residual
 The difference between the engine's omega-dot and that of the Newton–Euler equations at one
-identical state. No time stepping is involved, so a sound engine stays within a few roundings.
+identical state. No time stepping is involved, so a sound engine stays within a few roundings, also
+after another system was loaded, or a similar one, which differs in one number.
 = Formula: J |ω̇ − ω̇_ref| / S ≤ 64 eps J / λ; S: sizes of the terms of equation (8), J and λ: largest
   and smallest inertia
 
