@@ -59,6 +59,25 @@ def test_when_a_load_stops_or_begins_is_named(
     assert found[0].startswith(f"in the steps, {what} {phrase}")
 
 
+@pytest.mark.parametrize("samples", [1, 3])
+def test_a_load_that_stops_at_a_sample_is_named(samples: int) -> None:
+    """Caught: no cause, as every run takes another number of steps to get there."""
+    plans = ((0.031, 1), (0.0173, 4), (0.009, 2))  # with samples at other times in each
+    until = {h: samples * every for h, every in plans}
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        acts = float(n < until[h])
+        return scaled(applied_torque, lambda full, h: acts)(system, motion, q, v, h, n)
+
+    count = "first sample" if samples == 1 else "first 3 samples"
+    assert causes(step, plans) == [
+        f"in the steps, the applied torque does not act after the {count} of a run, however many "
+        "steps lead there"
+    ]
+
+
 def test_a_load_that_stops_in_some_runs_alone_is_not_named() -> None:
     """Caught: a law of the runs in which it shows, which the sound ones would show as well."""
     step = by_number(applied_torque, lambda n, t, x: float(n <= 14 or t > 0.2))

@@ -1,4 +1,4 @@
-"""When a load stops or begins to act: after a number of steps, a time, or a share of a run."""
+"""When a load stops or begins to act: after some steps or samples, a time, or a share of a run."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ def _law(spell: Spell, by: SchemeOf, runs: Sequence[KeptRun], failing: Sequence[
     seen = {turn.run.name for turn in turns if turn.run.fails and np.isfinite(turn.high)}
     if len(seen) < SCENARIOS:
         return ""
-    laws = [text for text in (_by_steps(spell, turns), *_by_times(spell, turns)) if text]
+    counted = _by_steps(spell, turns) or _by_samples(spell, turns)
+    laws = [text for text in (counted, *_by_times(spell, turns)) if text]
     return f"in the steps, {laws[0]}" if len(laws) == 1 else ""
 
 
@@ -73,6 +74,21 @@ def _by_steps(spell: Spell, turns: Sequence[Turn]) -> str:
     if spell.part == 0.0 and spell.stops:
         return f"{spell.name} acts in the first {steps} of a run alone"
     return _worded(spell, f"after the first {steps} of a run", f"in the first {steps} of a run")
+
+
+def _by_samples(spell: Spell, turns: Sequence[Turn]) -> str:
+    """By how many samples after the start a run has given."""
+    every = np.array([one.run.sweep.every for one in turns])
+    low, high = (np.array([getattr(one, end) for one in turns]) / every for end in ("low", "high"))
+    first, last = np.max(np.ceil(low)), np.min(np.floor(high))
+    if not 0 < first <= last < np.inf or any(one.within for one in turns):
+        return ""
+    count = number(first) if first == last else f"{number(first)} to {number(last)}"
+    samples = "sample" if last == 1 else f"{count} samples"
+    after = f"after the first {samples} of a run, however many steps lead there"
+    return _worded(
+        spell, after, f"up to the first {samples} of a run, however many steps lead there"
+    )
 
 
 def _by_times(spell: Spell, turns: Sequence[Turn]) -> Iterator[str]:
