@@ -302,3 +302,16 @@ def test_the_time_constant_of_a_filter_is_found_in_its_samples(tau: float) -> No
 def test_the_constant_of_a_filter_is_one_over_all_runs() -> None:
     text = "omega is reported through a low-pass of the first order with a time constant of {} s"
     assert kind_of(text.format(0.002)) != kind_of(text.format(0.003))
+
+
+def test_what_stays_as_it_was_given_and_stops_is_not_in_single_precision() -> None:
+    """Caught: a steady spin about two axes, put to sleep after a while, by its few short numbers."""
+    w = np.repeat([[0.0, 2.5, -1.0]], 20, axis=0)
+    q, none = np.repeat([[0.6, 0.8, 0.0, 0.0]], 20, axis=0), np.zeros((20, 3))
+    due = State(q, w * (1.0 + 1e-15 * np.arange(20))[:, None], none, none)
+    asleep = State(q, w * (np.arange(20) < 12)[:, None], none, none)
+    assert fields_in_single(asleep, due) == []
+    turning = State(
+        q, (w + 0.1 * np.arange(20)[:, None]).astype(np.float32).astype(float), *[none] * 2
+    )
+    assert fields_in_single(turning, due) == ["angular_velocity"]

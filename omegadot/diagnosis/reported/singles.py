@@ -14,6 +14,7 @@ MOTION = {"orientation": "the attitude", "angular_velocity": "omega"}
 PLACES = {"position": "the position", "linear_velocity": "the linear velocity"}
 NEAR = 3  # units in the last place by which making it unit may change the largest part
 ROUNDINGS = 4.0
+FEWEST = 4  # numbers, more than a vector has
 IN_SINGLE = "in single precision"
 
 
@@ -32,9 +33,9 @@ def _in_single(field: str, states: State) -> bool:
 
 
 def _is_single(values: Array) -> bool:
-    """A body put to sleep has zeros, which are single numbers too."""
+    """What stays as it was given, and the zeros of a body put to sleep, are single numbers too."""
     rows = np.reshape(values, (-1, values.shape[-1]))
-    moves = bool(np.ptp(rows, axis=0).any())
+    moves = len(np.unique(np.abs(rows[rows != 0.0]))) >= FEWEST
     with np.errstate(over="ignore"):  # what single precision cannot hold is not in it
         return moves and np.array_equal(rows, rows.astype(np.float32).astype(float))
 

@@ -43,12 +43,18 @@ from omegadot.reference_impl.system import Array
 
 MISSED = 0.2  # of the failing runs, that may be beyond what one share in an interval shows
 MOST_FAILING, MOST_SOUND = 16, 6  # runs that are looked at
+MOST_OTHERS = 8  # of which a law has to be as well
 FEW_STEPS, ENOUGH = 8, 4  # between samples, and scenarios with no more of them
 SCENARIOS = 2  # at least, that fail: of one motion much else may be the cause
 
 
-def law_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
-    """A term that acts otherwise in the steps, by one law in every run; none where none does."""
+def law_causes(
+    by: SchemeOf, chosen: Sequence[KeptRun], others: Sequence[KeptRun] = ()
+) -> list[str]:
+    """A term that acts otherwise in the steps, by one law in every run; none where none does.
+
+    others: runs of which the law of those that are chosen has to be as well.
+    """
     every: dict[str, list[Shares]] = {name: [] for name in TERMS}
     left = dict.fromkeys(TERMS, int(MISSED * sum(run.fails for run in chosen)))
     for run in chosen:
@@ -65,6 +71,10 @@ def law_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
     for name, shares in every.items():  # what states less comes first
         points = points_of(shares)
         texts = laws_of(points) if points is not None else []
+        if texts:
+            more = [found[name] for run in others if name in (found := shares_of(run, by))]
+            points = points_of([*shares, *more])
+            texts = laws_of(points) if points is not None else []
         if texts:
             return either([f"in the steps, {text.format(name)}" for text in texts])
     return []
@@ -111,7 +121,7 @@ def _searches(
     yield lambda: load_time_causes(by, runs)
     yield lambda: spell_causes(by, runs)
     yield lambda: impulse_causes(by, runs)
-    yield lambda: law_causes(by, chosen)
+    yield lambda: law_causes(by, chosen, _others(runs, chosen))
     solves = by.scheme.name in SOLVED  # of an equation one iteration has old operands as well
     if not solves:
         yield lambda: either(old_operands(by, chosen))
@@ -159,6 +169,13 @@ def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
     if len({run.name for run in few}) >= ENOUGH:
         failing = few
     return [*_evenly(failing, MOST_FAILING), *_evenly(sound, MOST_SOUND)]
+
+
+def _others(runs: Sequence[KeptRun], chosen: Sequence[KeptRun]) -> list[KeptRun]:
+    """Some that fail besides those that are chosen."""
+    known = {(run.name, run.timestep) for run in chosen}
+    left = [run for run in runs if run.fails and (run.name, run.timestep) not in known]
+    return [run.short for run in _evenly(left, MOST_OTHERS)]
 
 
 def _two_each(runs: Sequence[KeptRun]) -> list[KeptRun]:

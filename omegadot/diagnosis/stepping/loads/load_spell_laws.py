@@ -11,6 +11,7 @@ from omegadot.diagnosis.stepping.loads.acting import TERMS
 from omegadot.diagnosis.stepping.loads.load_parts import least_stated
 from omegadot.diagnosis.stepping.loads.load_spells import Spell, Turn, spells_of, turn_of
 from omegadot.diagnosis.wording.digits import factor, number
+from omegadot.diagnosis.wording.kinds import MOST_NAMED
 from omegadot.reference_impl.system import System
 from omegadot.written import written
 
@@ -36,7 +37,7 @@ def spell_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
 
 
 def _law(spell: Spell, by: SchemeOf, runs: Sequence[KeptRun], failing: Sequence[KeptRun]) -> str:
-    """When the load changes in all runs, as text; "" where by no law, or by more than one."""
+    """When the load changes in all runs, as text; "" where by no law, or by many."""
     turns = list[Turn]()
     for run in (*failing, *(run for run in runs if not run.fails)):
         if run.fails or _is_requested(run.system, spell.name):
@@ -49,7 +50,8 @@ def _law(spell: Spell, by: SchemeOf, runs: Sequence[KeptRun], failing: Sequence[
         return ""
     counted = _by_steps(spell, turns) or _by_samples(spell, turns)
     laws = [text for text in (counted, *_by_times(spell, turns)) if text]
-    return f"in the steps, {laws[0]}" if len(laws) == 1 else ""
+    text = laws[0] if len(laws) == 1 else f"either {', or '.join(laws)}"
+    return f"in the steps, {text}" if 0 < len(laws) <= MOST_NAMED else ""
 
 
 def _is_requested(system: System, name: str) -> bool:
