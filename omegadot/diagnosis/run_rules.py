@@ -84,6 +84,8 @@ KINDS: Mapping[str, Callable[[Integrator, KeptRuns], RunRule | None]] = {
     STARTS: lambda how, runs: other_start(how, runs.steps, runs.given, runs.kept),
     READ: lambda how, runs: samples_read(how, runs.steps, runs.given, runs.kept),
     ENDS: lambda how, runs: other_ends(how, runs.ends, runs.kept),
-    MOVED: lambda how, runs: moved_samples(how, runs.kept) or lagging_fields(how, runs.kept),
+    MOVED: lambda how, runs: (
+        moved_samples(how, runs.kept) or lagging_fields(how, runs.kept, runs.given)
+    ),
     LENGTHS: lambda how, runs: other_lengths(how, runs.steps, runs.kept, runs.requested),
 }

@@ -156,19 +156,19 @@ def test_steps_that_move_nothing_do_not_go_on() -> None:
     assert not any(run.goes_on(BY) for run in runs)
 
 
-def lagging(fields: tuple[str, ...], shift: int, scheme: str | None) -> str:
-    """Of runs of whose samples, but for the first, these fields are of another step."""
-    runs = list[KeptRun]()
+def lagging(fields: tuple[str, ...], shift: int, scheme: str | None, first: bool = False) -> str:
+    """Of runs of whose samples these fields are of another step: all but the first, or it alone."""
+    runs, given = list[KeptRun](), {one.name: one.initial for one in CASES}
     for one in CASES:
         whole = kept(one, step, 0.02, 1)
         right = moved(whole, 2, lambda i: 0)
-        places = np.minimum(right.sweep.sample_steps + shift, len(whole.times) - 1)
-        places[0] = 0
+        at = right.sweep.sample_steps
+        places = np.minimum(at + shift * ((at == 0) == first), len(whole.times) - 1)
         state = replace(
             right.state, **{name: getattr(whole.state, name)[places] for name in fields}
         )
         runs.append(replace(right, state=state, fails=True))
-    seen = lagging_fields(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
+    seen = lagging_fields(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs, given)
     return "" if seen is None else seen.statement
 
 
@@ -196,3 +196,12 @@ def test_fields_that_lag_in_every_sample_are_named(
     """Caught: "the attitude does not move in the first step", as such a sample makes it look."""
     found = lagging(fields, shift, scheme).replace("is that of", "is of").replace("those of", "of")
     assert found == (f"{text} its time" if text else "")
+
+
+@pytest.mark.parametrize("scheme", [EULER, None])
+def test_fields_of_the_first_sample_that_are_of_after_the_first_step_are_named(
+    scheme: str | None,
+) -> None:
+    """Caught: "runs begin at other states", though they go on from the one that is given."""
+    found = lagging(("angular_velocity", "linear_velocity"), 1, scheme, first=True)
+    assert found == "the omega of the first sample, at the start, is that of after the first step"
