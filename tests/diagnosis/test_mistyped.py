@@ -33,6 +33,7 @@ def engine(
     matrix: Callable[[Array], Array] = rotation_matrix,
     of_weight: Callable[[Array], Array] = rotation_matrix,
     out: Callable[[Array], Array] = rotation_matrix,
+    momentum: Callable[[Array, Array], Array] = apply,
     **products: Cross,
 ) -> Callable[[System, State], Acceleration]:
     """Equation (8) written out, with each rotation and each cross product by itself."""
@@ -48,7 +49,7 @@ def engine(
         torque = torque + damping_torque(system, states)
         if held:
             torque = torque + by("weight")(r, weight(system) @ of_weight(q))
-        spin = by("spin")(w, apply(inertia, w))
+        spin = by("spin")(w, momentum(np.asarray(inertia), w))
         angular = apply(inverse(inertia), torque - spin)
         if not held:
             return Acceleration(angular, system.load.gravity + 0.0 * w)
@@ -171,6 +172,31 @@ SLIPS = {
         engine(every=Z),
         "the z component of every cross product a x b is a_x b_y - a_y b_y, where "
         "a_x b_y - a_y b_x is right",
+    ),
+}
+
+
+def with_number(i: int, j: int, axis: int) -> Callable[[Array, Array], Array]:
+    """``I omega`` whose z component has I_ij with another component of omega than omega_i."""
+
+    def momentum(inertia: Array, w: Array) -> Array:
+        found = np.array(apply(inertia, w))
+        found[..., 2] += inertia[i, j] * (w[..., axis] - w[..., i])
+        return found
+
+    return momentum
+
+
+RIGHT = "I_xz omega_x + I_yz omega_y + I_zz omega_z is right"
+SLIPS |= {
+    "x of the momentum's z": (
+        engine(momentum=with_number(1, 2, 0)),
+        "the z component of L = I omega in the gyroscopic term omega x L is "
+        f"I_xz omega_x + I_zz omega_z + I_yz omega_x, where {RIGHT}",
+    ),
+    "y of the momentum's z": (
+        engine(momentum=with_number(0, 2, 1)),
+        f"I_yz omega_y + I_zz omega_z + I_xz omega_y, where {RIGHT}",
     ),
 }
 

@@ -9,7 +9,7 @@ import numpy as np
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import SCREENED, Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
-from omegadot.diagnosis.equations.mistyped import cross_products, rotations
+from omegadot.diagnosis.equations.mistyped import cross_products, momenta, rotations
 from omegadot.diagnosis.equations.mistyped.few import Few, factors_of, few_of
 from omegadot.diagnosis.equations.mistyped.kinds import ANGULAR, LINEAR, Kind
 from omegadot.diagnosis.equations.readings import Reading
@@ -19,7 +19,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Array
 
-KINDS = (*rotations.kinds(), *cross_products.kinds())
+KINDS = (*rotations.kinds(), *cross_products.kinds(), *momenta.kinds())
 
 
 class Mistyped:
