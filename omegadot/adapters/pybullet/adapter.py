@@ -32,7 +32,7 @@ CONVENTIONS = (
     "velocities of a base are (linear, angular), in world axes; that of a spherical joint is omega "
     "in principal axes; calculateInverseDynamics takes (angular, linear) in the base's own axes, "
     "and answers with (force, torque)",
-    "torques are applyExternalTorque, in LINK_FRAME or WORLD_FRAME, before each step",
+    "torques are applyExternalTorque before each step, of a base in LINK_FRAME or WORLD_FRAME",
     "damping is the jointDamping of the spherical joint; a free body has none that is a torque "
     "-damping * omega",
     "the frame of the inertia of a body in maximal coordinates reads back wrong: the model is read "

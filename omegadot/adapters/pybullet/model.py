@@ -15,7 +15,7 @@ from omegadot.adapters.body_files import origin_at_pivot
 from omegadot.adapters.mujoco.model import principal_frame
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.adapters.pybullet.integrators import Kind
-from omegadot.reference_impl.rotations import rotate_inverse, rotation_matrix
+from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, Load, System
 
 BASE = -1  # the number that PyBullet gives it
@@ -25,6 +25,8 @@ SWITCHED_OFF = (
     "linearDamping and angularDamping of 0.04 of multibodies",
     "maxJointVelocity of 100 rad/s",
     "the motor of a spherical joint",
+    "the axes of a link in LINK_FRAME, which are those of a step before: a torque in body axes is "
+    "one of the spherical joint (TORQUE_CONTROL)",
     "the inertia in world axes of the attitude before, with which a body in maximal coordinates "
     "begins: a step at rest is taken first",
     "the cut of a turn to 45 degrees in a step: the adapter refuses to go on there",
@@ -110,13 +112,6 @@ class PyBulletModel:
                 force=[0.0, 0.0, 0.0],
                 physicsClientId=client,
             )
-
-    def torques(self) -> list[tuple[list[float], int]]:
-        """Those that act in every step, each with the flag of its axes: principal or world."""
-        load, engine = self.system.load, self._engine
-        own = rotate_inverse(self.frame, np.array(load.torque_body, float))
-        both = ((own, engine.LINK_FRAME), (np.array(load.torque_world), engine.WORLD_FRAME))
-        return [(torque.tolist(), axes) for torque, axes in both if torque.any()]
 
     def read_back(self) -> Body:
         """Mass, centre of mass and inertia about it, of `getDynamicsInfo`."""

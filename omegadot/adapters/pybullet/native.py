@@ -46,7 +46,8 @@ def _seen(pybullet: Any, maximal: int) -> tuple[Array, Array]:
 def _matrix(q: Any) -> Array:
     x, y, z, w = q
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + 2 * w * skew + 2 * skew @ skew
+    matrix: Array = np.eye(3) + 2 * w * skew + 2 * skew @ skew
+    return matrix
 
 
 def _sphere(pybullet: Any, client: int, maximal: int) -> int:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from time import perf_counter
 from typing import Any
@@ -11,6 +13,8 @@ import numpy as np
 
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.adapters.pybullet.joint import PyBulletJoint
+from omegadot.adapters.pybullet.model import PyBulletModel
+from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Array, State
 
 # rad. Beyond, an attitude turns by this much in a step and omega does not know of it.
@@ -35,6 +39,26 @@ def begin(engine: Any, joint: PyBulletJoint, start: State, h: float) -> None:
     joint.set_state(start)
 
 
+def torques_of(engine: Any, model: PyBulletModel) -> list[Callable[[], object]]:
+    """What has to be called before each step, as PyBullet forgets torques after it.
+
+    That in body axes is one of the joint where there is one, in the link's own axes: LINK_FRAME
+    takes the axes of a link as they were a step before.
+    """
+    load, body, link, client = model.system.load, model.body, model.link, model.client
+    own = rotate_inverse(model.frame, np.array(load.torque_body, float)).tolist()
+    act, found = engine.applyExternalTorque, list[Callable[[], object]]()
+    if load.torque_body.any() and model.strict and not model.free:
+        drive, how = engine.setJointMotorControlMultiDof, engine.TORQUE_CONTROL
+        found.append(partial(drive, body, link, how, force=own, physicsClientId=client))
+    elif load.torque_body.any():
+        found.append(partial(act, body, link, own, engine.LINK_FRAME, client))
+    if load.torque_world.any():
+        torque = np.array(load.torque_world, float).tolist()
+        found.append(partial(act, body, link, torque, engine.WORLD_FRAME, client))
+    return found
+
+
 def run(
     engine: Any, joint: PyBulletJoint, start: State, h: float, kept: list[int]
 ) -> tuple[Array, float]:
@@ -53,15 +77,18 @@ def run(
 def _steps(
     engine: Any, joint: PyBulletJoint, start: State, h: float, kept: list[int], *, looking: bool
 ) -> tuple[Array, float]:
-    model, step, act = joint.model, engine.stepSimulation, engine.applyExternalTorque
-    body, link, client, torques = model.body, model.link, model.client, model.torques()
+    step, client, torques = (
+        engine.stepSimulation,
+        joint.model.client,
+        torques_of(engine, joint.model),
+    )
     begin(engine, joint, start, h)
     rows = [joint.row()]
     began = perf_counter()
     for first, last in pairwise(kept):
         for _ in range(last - first):
-            for torque, axes in torques:  # PyBullet forgets them after each step
-                act(body, link, torque, axes, client)
+            for act in torques:
+                act()
             step(client)
             if looking:
                 refuse_long(joint.row(), h)
