@@ -139,6 +139,22 @@ def test_as_shipped_a_multibody_loses_its_energy_and_maximal_coordinates_do_not(
     assert all(abs(spin - 1.0) <= 4 * EPS for spin in spins.values())
 
 
+def test_as_shipped_a_pivoted_body_is_held_still_by_a_motor() -> None:
+    of = system("full", "pivot")
+    assert norm(ended(of, "multibody").angular_velocity) > 1.0
+    assert norm(ended(of, "multibody", "as-shipped", 1).angular_velocity) <= FEW * EPS
+
+
+def test_as_shipped_velocities_of_a_multibody_are_cut_to_100() -> None:
+    of = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),), Load())
+    fast = np.array([150.0, 0.0, 0.0])
+    start = State(NO_TURN, fast, np.zeros(3), fast)
+    for setup, expected in (("physics", 150.0), ("as-shipped", 100.0)):
+        end = pybullet(of, setup).run(start, "multibody", 0.001, 1, 1).state[-1]
+        found = end.angular_velocity[0], end.linear_velocity[0]
+        assert np.allclose(found, expected, rtol=FEW * EPS, atol=0)
+
+
 @pytest.mark.parametrize("kind", ["multibody", "maximal"])
 def test_a_turn_of_45_degrees_in_a_step_is_refused(kind: str) -> None:
     of = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 2.0, 2.8])),), Load())
