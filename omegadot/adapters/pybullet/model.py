@@ -23,8 +23,9 @@ FASTEST = 1e300  # rad/s and m/s
 NO_TURN = (0.0, 0.0, 0.0, 1.0)
 SWITCHED_OFF = (
     "linearDamping and angularDamping of 0.04 of multibodies",
-    "maxJointVelocity of 100, to which each component of omega and velocity is cut, in rad/s and m/s",
-    "the motor of a spherical joint, which holds it still",
+    "maxJointVelocity of 100, to which each component of omega and velocity is cut, in rad/s and "
+    "m/s",
+    "the motor of a spherical joint, which stops it",
     "the axes of a link in LINK_FRAME, which are those of a step before: a torque in body axes is "
     "one of the spherical joint (TORQUE_CONTROL)",
     "the inertia in world axes of the attitude before, with which a body in maximal coordinates "
