@@ -37,6 +37,7 @@ THIRD_PARTY = {
         "exudyn",
         "Basilisk",
         "opensim",
+        "pybullet",
         "jax",
     },
     "workers/engine_end": {"numpy", "scipy"},
@@ -126,7 +127,18 @@ def test_lower_rooms_stay_small(room: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk", "opensim", "jax"]
+    "engine",
+    [
+        "mujoco",
+        "pinocchio",
+        "dartpy",
+        "pydrake",
+        "exudyn",
+        "Basilisk",
+        "opensim",
+        "pybullet",
+        "jax",
+    ],
 )
 def test_engines_are_imported_in_functions_only(engine: str) -> None:
     for file in files_of("adapters"):

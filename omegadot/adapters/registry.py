@@ -35,6 +35,7 @@ EXTRAS: dict[str, str] = {
     "exudyn": "omegadot.adapters.exudyn.adapter:ExudynAdapter",
     "basilisk": "omegadot.adapters.basilisk.adapter:BasiliskAdapter",
     "opensim": "omegadot.adapters.opensim.adapter:OpenSimAdapter",
+    "pybullet": "omegadot.adapters.pybullet.adapter:PyBulletAdapter",
     "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
 }
@@ -51,6 +52,7 @@ _MODULES = {
     "exudyn": ("exudyn",),
     "basilisk": ("Basilisk",),
     "opensim": ("opensim",),
+    "pybullet": ("pybullet",),
     "mjx": ("jax", "mujoco.mjx"),
 }
 

@@ -17,7 +17,7 @@ import psutil
 
 RECORDED = (
     "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2",
-    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk", "opensim",
+    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk", "opensim", "pybullet",
     "mujoco-mjx", "jax", "jaxlib"
 )  # fmt: skip
 

@@ -25,6 +25,7 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[exudyn]'",
     ".venv/bin/pip install -e '.[basilisk]'",
     ".venv/bin/pip install -e '.[opensim]'",
+    ".venv/bin/pip install -e '.[pybullet]'",
     ".venv/bin/pip install -e '.[mjx]'",
     ".venv/bin/omegadot engines --install node",
 )

@@ -21,6 +21,7 @@ PACKAGES = {
     "exudyn": "exudyn",
     "basilisk": "bsk",
     "opensim": "opensim",
+    "pybullet": "pybullet",
     "mjx": "mujoco-mjx",
     "mjx-float32": "mujoco-mjx",
 }
