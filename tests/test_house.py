@@ -38,6 +38,7 @@ THIRD_PARTY = {
         "Basilisk",
         "opensim",
         "jax",
+        "jaxsim",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }
@@ -126,7 +127,8 @@ def test_lower_rooms_stay_small(room: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "engine", ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk", "opensim", "jax"]
+    "engine",
+    ["mujoco", "pinocchio", "dartpy", "pydrake", "exudyn", "Basilisk", "opensim", "jax", "jaxsim"],
 )
 def test_engines_are_imported_in_functions_only(engine: str) -> None:
     for file in files_of("adapters"):

@@ -37,6 +37,8 @@ EXTRAS: dict[str, str] = {
     "opensim": "omegadot.adapters.opensim.adapter:OpenSimAdapter",
     "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
+    "jaxsim": "omegadot.adapters.jaxsim.adapter:JaxsimAdapter",
+    "jaxsim-float32": "omegadot.adapters.jaxsim.adapter:JaxsimFloat32Adapter",
 }
 """Engines that an extra installs, by the name before a hyphen: ``pip install 'omegadot[mjx]'``."""
 NODE: dict[str, str] = {
@@ -52,6 +54,7 @@ _MODULES = {
     "basilisk": ("Basilisk",),
     "opensim": ("opensim",),
     "mjx": ("jax", "mujoco.mjx"),
+    "jaxsim": ("jax", "jaxsim"),
 }
 
 
