@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 from time import perf_counter
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -88,16 +88,14 @@ class JaxsimAdapter:
         self._own()
         return (self._body,)
 
-    def _data_of(self, state: State) -> Any:
-        return self._own().begin(self._coordinates.of_state(state))
-
     def set_state(self, state: State) -> None:
-        """Keep the state as `JaxSimModelData`."""
-        self._state = self._data_of(state)
+        """Have JaxSim keep the state, as `JaxSimModelData`."""
+        _, self._row = self._own().begin(self._coordinates.of_state(state))
 
     def get_state(self) -> State:
-        """The state of that `JaxSimModelData`."""
-        return self._coordinates.to_state(self._own().row_of(self._state))
+        """The state that it has, by its own kinematics."""
+        self._own()
+        return self._coordinates.to_state(self._row)
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """By `jaxsim.api.model.forward_dynamics`, the articulated-body algorithm, at n states."""
@@ -118,11 +116,11 @@ class JaxsimAdapter:
         if integrator not in NAMES:
             raise UnsupportedError(f"jaxsim has no integrator {integrator!r} that steps a body.")
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
-            start = self._data_of(initial)
+            start, row = own.begin(self._coordinates.of_state(initial))
             began = perf_counter()
             found = own.run(start, integrator, timestep, steps, every)
             seconds = perf_counter() - began
-            rows = np.concatenate([own.row_of(start)[None], *found], dtype=float)
+            rows = np.concatenate([row[None], *found], dtype=float)
             state = self._coordinates.to_state(rows)
         return Trajectory(np.array(kept) * timestep, state, seconds)
 

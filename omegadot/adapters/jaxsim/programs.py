@@ -26,7 +26,7 @@ class Programs:
         self.compiled: dict[str, Any] = {}
 
     def of(self, kind: str, arguments: tuple[Any, ...]) -> Any:
-        """The program of a kind: an integrator, "begin", "row", "forward" or "inverse"."""
+        """The program of a kind: an integrator, "begin", "forward" or "inverse"."""
         if kind not in self.compiled:
             made = self._steps(kind) if kind in NAMES else getattr(self, f"_{kind}")()
             self.compiled[kind] = self._engine.jax.jit(made).lower(*arguments).compile()
@@ -58,12 +58,13 @@ class Programs:
         return jnp.concatenate((jnp.zeros_like(torque), torque))[None]
 
     def _begin(self) -> Any:
-        """``(body, loads, gravity, row)`` to `JaxSimModelData`."""
-        return lambda body, _, gravity, row: self._data(self._model(body, gravity, 0.0), row)
+        """``(body, loads, gravity, row)`` to `JaxSimModelData` and the row that it has."""
 
-    def _row(self) -> Any:
-        """``(body, loads, gravity, data)`` to a row."""
-        return lambda body, loads, gravity, data: self._row_of(data)
+        def program(body: Any, _: Any, gravity: Any, row: Any) -> Any:
+            data = self._data(self._model(body, gravity, 0.0), row)
+            return data, self._row_of(data)
+
+        return program
 
     def _steps(self, integrator: str) -> Any:
         """``(body, loads, gravity, data, timestep, steps, every)`` to ROWS rows and the last data.
@@ -153,15 +154,11 @@ class Loaded:
                 found.append(np.array(self._call(kind, *batch), float))
         return np.concatenate(found)[:rows]
 
-    def begin(self, row: Array) -> Any:
-        """`JaxSimModelData` of a row."""
+    def begin(self, row: Array) -> tuple[Any, Array]:
+        """`JaxSimModelData` of a row, and the row that it has."""
         with self._engine.active():
-            return self._call("begin", self.rounded(row))
-
-    def row_of(self, data: Any) -> Array:
-        """The row of `JaxSimModelData`."""
-        with self._engine.active():
-            return np.array(self._call("row", data), float)
+            data, held = self._call("begin", self.rounded(row))
+            return data, np.array(held, float)
 
     def forward(self, rows: Array) -> Array:
         """Accelerations by JaxSim's forward dynamics at n rows, (n, 6)."""
