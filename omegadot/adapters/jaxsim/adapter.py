@@ -28,6 +28,10 @@ CONVENTIONS = (
     "precision",
     "a run is one loop of XLA, from sample to sample; the first call of each compiles it",
 )
+SWITCHED_OFF = (
+    "rounding by the distance from the world's origin, of whose point JaxSim keeps the velocity: the "
+    "origin is put where the body begins",
+)
 LINKS = (
     "https://jaxsim.readthedocs.io/",
     "https://github.com/gbionics/jaxsim",
@@ -43,6 +47,7 @@ class JaxsimAdapter:
 
     def __init__(self, setup: Setup = "physics") -> None:
         self._engine = import_engine(self.precision)
+        self._setup: Setup = setup
         self._programs = Programs(self._engine)
         self._load = Load()
 
@@ -55,6 +60,7 @@ class JaxsimAdapter:
             integrators=declared_integrators(self._load),
             precision=self.precision,
             conventions=CONVENTIONS,
+            switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=(ONE_BODY | {"batch"}) - {"pivot"},
             licence="BSD-3-Clause",
             links=LINKS,
@@ -88,9 +94,21 @@ class JaxsimAdapter:
         self._own()
         return (self._body,)
 
+    def _rows_and_places(self, states: State) -> tuple[Array, Array]:
+        """Rows (..., 13) and, of each, the place (..., 3) at which JaxSim's world has its origin.
+
+        No motion depends on it but by rounding.
+        """
+        rows = self._coordinates.of_state(states)
+        places = rows[..., :3] * (self._setup == "physics")
+        rows[..., :3] -= places
+        return rows, places
+
     def set_state(self, state: State) -> None:
         """Have JaxSim keep the state, as `JaxSimModelData`."""
-        _, self._row = self._own().begin(self._coordinates.of_state(state))
+        row, place = self._rows_and_places(state)
+        _, self._row = self._own().begin(row)
+        self._row[:3] += place
 
     def get_state(self) -> State:
         """The state that it has, by its own kinematics."""
@@ -99,12 +117,12 @@ class JaxsimAdapter:
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """By `jaxsim.api.model.forward_dynamics`, the articulated-body algorithm, at n states."""
-        found = self._own().forward(self._coordinates.of_state(states))
+        found = self._own().forward(self._rows_and_places(states)[0])
         return self._coordinates.to_acceleration(states, found)
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """Torque (n, 3) of `jaxsim.api.model.inverse_dynamics`."""
-        rows = self._coordinates.of_state(states)
+        rows, _ = self._rows_and_places(states)
         wanted = self._coordinates.of_acceleration(states, acceleration)
         return self._coordinates.to_torque(states, self._own().inverse(rows, wanted))
 
@@ -116,11 +134,13 @@ class JaxsimAdapter:
         if integrator not in NAMES:
             raise UnsupportedError(f"jaxsim has no integrator {integrator!r} that steps a body.")
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
-            start, row = own.begin(self._coordinates.of_state(initial))
+            first, place = self._rows_and_places(initial)
+            start, row = own.begin(first)
             began = perf_counter()
             found = own.run(start, integrator, timestep, steps, every)
             seconds = perf_counter() - began
             rows = np.concatenate([row[None], *found], dtype=float)
+            rows[:, :3] += place
             state = self._coordinates.to_state(rows)
         return Trajectory(np.array(kept) * timestep, state, seconds)
 
