@@ -29,8 +29,8 @@ CONVENTIONS = (
     "a run is one loop of XLA, from sample to sample; the first call of each compiles it",
 )
 SWITCHED_OFF = (
-    "rounding by the distance from the world's origin, of whose point JaxSim keeps the velocity: the "
-    "origin is put where the body begins",
+    "rounding by the distance from the world's origin, as JaxSim keeps the velocity of the point "
+    "there: the origin is put where the body begins",
 )
 LINKS = (
     "https://jaxsim.readthedocs.io/",
