@@ -39,6 +39,7 @@ THIRD_PARTY = {
         "opensim",
         "pybullet",
         "jax",
+        "jaxsim",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }
@@ -138,6 +139,7 @@ def test_lower_rooms_stay_small(room: str) -> None:
         "opensim",
         "pybullet",
         "jax",
+        "jaxsim",
     ],
 )
 def test_engines_are_imported_in_functions_only(engine: str) -> None:

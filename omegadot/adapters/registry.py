@@ -38,6 +38,8 @@ EXTRAS: dict[str, str] = {
     "pybullet": "omegadot.adapters.pybullet.adapter:PyBulletAdapter",
     "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
+    "jaxsim": "omegadot.adapters.jaxsim.adapter:JaxsimAdapter",
+    "jaxsim-float32": "omegadot.adapters.jaxsim.adapter:JaxsimFloat32Adapter",
 }
 """Engines that an extra installs, by the name before a hyphen: ``pip install 'omegadot[mjx]'``."""
 NODE: dict[str, str] = {
@@ -54,6 +56,7 @@ _MODULES = {
     "opensim": ("opensim",),
     "pybullet": ("pybullet",),
     "mjx": ("jax", "mujoco.mjx"),
+    "jaxsim": ("jax", "jaxsim"),
 }
 
 

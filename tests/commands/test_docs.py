@@ -27,6 +27,7 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[opensim]'",
     ".venv/bin/pip install -e '.[pybullet]'",
     ".venv/bin/pip install -e '.[mjx]'",
+    ".venv/bin/pip install -e '.[jaxsim]'",
     ".venv/bin/omegadot engines --install node",
 )
 

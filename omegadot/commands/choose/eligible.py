@@ -24,6 +24,8 @@ PACKAGES = {
     "pybullet": "pybullet",
     "mjx": "mujoco-mjx",
     "mjx-float32": "mujoco-mjx",
+    "jaxsim": "jaxsim",
+    "jaxsim-float32": "jaxsim",
 }
 # More than any minor version of Python has had.
 MOST_RELEASES = 40

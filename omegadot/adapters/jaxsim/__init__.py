@@ -1,0 +1,1 @@
+"""JaxSim, on JAX, behind the protocol."""
