@@ -38,6 +38,7 @@ THIRD_PARTY = {
         "Basilisk",
         "opensim",
         "pybullet",
+        "sapien",
         "jax",
     },
     "workers/engine_end": {"numpy", "scipy"},
@@ -137,6 +138,7 @@ def test_lower_rooms_stay_small(room: str) -> None:
         "Basilisk",
         "opensim",
         "pybullet",
+        "sapien",
         "jax",
     ],
 )
