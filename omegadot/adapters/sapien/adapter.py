@@ -61,7 +61,7 @@ class SapienAdapter(OneJointAdapter):
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=FEATURES,
-            licence="MIT",
+            licence="Apache-2.0 AND BSD-3-Clause",  # of SAPIEN, and of PhysX in it
             links=LINKS,
         )
 
