@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 from typing import Any
 
@@ -215,6 +217,11 @@ def test_as_shipped_a_slow_body_is_put_to_sleep() -> None:
     for setup, moves in (("as-shipped", False), ("physics", True)):
         found = sapien(SPHERE, setup).run(spun(0.0, 0.0, 1e-3), "step", 0.02, 400, 200)
         assert bool(np.any(found.state.orientation[1] != found.state.orientation[2])) is moves
+
+
+def test_importing_the_adapter_leaves_the_engine_alone() -> None:
+    code = "import sys, omegadot.adapters.sapien.adapter; sys.exit('sapien' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_it_describes_itself() -> None:
