@@ -36,6 +36,7 @@ EXTRAS: dict[str, str] = {
     "basilisk": "omegadot.adapters.basilisk.adapter:BasiliskAdapter",
     "opensim": "omegadot.adapters.opensim.adapter:OpenSimAdapter",
     "pybullet": "omegadot.adapters.pybullet.adapter:PyBulletAdapter",
+    "sapien": "omegadot.adapters.sapien.adapter:SapienAdapter",
     "mjx": "omegadot.adapters.mjx.adapter:MjxAdapter",
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
     "jaxsim": "omegadot.adapters.jaxsim.adapter:JaxsimAdapter",
@@ -55,6 +56,7 @@ _MODULES = {
     "basilisk": ("Basilisk",),
     "opensim": ("opensim",),
     "pybullet": ("pybullet",),
+    "sapien": ("sapien",),
     "mjx": ("jax", "mujoco.mjx"),
     "jaxsim": ("jax", "jaxsim"),
 }

@@ -17,7 +17,7 @@ import psutil
 
 RECORDED = (
     "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2",
-    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk", "opensim", "pybullet",
+    "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk", "opensim", "pybullet", "sapien",
     "mujoco-mjx", "jaxsim", "jax", "jaxlib"
 )  # fmt: skip
 

@@ -26,6 +26,7 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[basilisk]'",
     ".venv/bin/pip install -e '.[opensim]'",
     ".venv/bin/pip install -e '.[pybullet]'",
+    ".venv/bin/pip install -e '.[sapien]'",
     ".venv/bin/pip install -e '.[mjx]'",
     ".venv/bin/pip install -e '.[jaxsim]'",
     ".venv/bin/omegadot engines --install node",

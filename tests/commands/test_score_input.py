@@ -149,8 +149,8 @@ def test_one_component_in_another_unit_is_refused(tmp_path, capsys):
         ((*MAPPED, "--name", "mujoco"), "an engine has this name"),
         ((*MAPPED, "--name", "a\x1b[31m"), "a name of printable characters"),
         (
-            (*MAPPED, "--with", "bullet3"),
-            "--with bullet3: no such engine; choose ammo, basilisk",
+            (*MAPPED, "--with", "chrono"),
+            "--with chrono: no such engine; choose ammo, basilisk",
         ),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),

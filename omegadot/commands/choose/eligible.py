@@ -22,6 +22,7 @@ PACKAGES = {
     "basilisk": "bsk",
     "opensim": "opensim",
     "pybullet": "pybullet",
+    "sapien": "sapien",
     "mjx": "mujoco-mjx",
     "mjx-float32": "mujoco-mjx",
     "jaxsim": "jaxsim",

@@ -1,0 +1,1 @@
+"""SAPIEN, which steps by PhysX, behind the protocol."""
