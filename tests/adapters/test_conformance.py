@@ -38,9 +38,8 @@ from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
 # Those in Python that take every load; tests/adapters/test_node.py has the same of those that run
-# through Node, test_basilisk.py, test_jaxsim.py and test_sapien.py of Basilisk, JaxSim and SAPIEN,
-# which take free bodies alone, test_pybullet.py of PyBullet, which has no omega-dot, and test_mjx.py
-# of MJX in single precision.
+# through Node, test_basilisk.py, test_jaxsim.py and test_sapien.py of engines that take free bodies
+# alone, test_pybullet.py of one without omega-dot, test_mjx.py of MJX in single precision.
 APART = {"basilisk", "jaxsim", "jaxsim-float32", "mjx-float32", "pybullet", "sapien"}
 ENGINES = sorted(set(OURS) - set(NODE) - APART - set(filter(is_absent, OURS)))
 FEW = 64  # roundings in a row of about twenty operations on three components
