@@ -15,7 +15,7 @@ from omegadot.diagnosis.models.kept_place import kept_place
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
-from omegadot.diagnosis.reported.requests import AGAIN, RELOADED
+from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.run_rules import ENDS, LENGTHS, MOVED, READ, STARTS
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
@@ -139,11 +139,9 @@ class IntegratorCauses:
         A run of other steps is another share of a run.
         """
         again = self._kept.again
-        if again and again not in (AGAIN["repeated"], AGAIN["negated"]) and self._again != again:
+        if again and again not in (AGAIN["repeated"], AGAIN["negated"]):
             return []
         together = self._over.together(self._integrator)
-        if again == AGAIN["reloaded"]:
-            return [f"{text}{RELOADED}" for text in together if is_named(text)]
         if again == AGAIN["repeated"]:
             return [text for text in together if OF_SHARE in text]
         return [text for text in together if self._makes_negated(text)] if again else together

@@ -22,8 +22,6 @@ AGAIN = {
     "first quaternion changes the run, or something is left over from a run before",
 }
 
-RELOADED = ", but the same run is another after another system was loaded in between"
-
 
 ONE_ALONE = "one state requested by itself is answered wrongly; the same among others is right"
 

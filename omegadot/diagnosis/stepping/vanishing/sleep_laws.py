@@ -90,10 +90,10 @@ def law_of_sleep(every: Sequence[Sleeps]) -> str:
         return ""
     with np.errstate(all="ignore"):
         counted, timed = _fits(spells, others, None), _fits(spells, others, _times(spells))
-    apart = len({run.name for run, _ in others} - asleep)
-    texts = _of_one(spells, counted, timed, apart)
-    if not {OMEGA, SPEED} & texts.keys():  # with the right limit of one, any of the other holds
-        texts[""] = _of_two(spells, others, apart)
+        apart = len({run.name for run, _ in others} - asleep)
+        texts = _of_one(spells, counted, timed, apart)
+        if not {OMEGA, SPEED} & texts.keys():  # with the right limit of one, any of the other holds
+            texts[""] = _of_two(spells, others, apart)
     named = [text for text in texts.values() if text]
     several = "either " * (len(named) > 1)
     return f"{SLEEPS} where {several}{', or '.join(named)}" * (0 < len(named) <= MOST_NAMED)
