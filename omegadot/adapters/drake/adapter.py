@@ -70,11 +70,11 @@ class DrakeAdapter(OneJointAdapter):
 
     @property
     def description(self) -> Description:
-        """Drake as it is installed, the same whatever system is loaded."""
+        """Drake as it is installed, and what it steps of a free or of a pivoted body."""
         return Description(
             name=self.name,
             version=version("drake"),
-            integrators=declared_integrators(),
+            integrators=declared_integrators(self._pivoted),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=ONE_BODY,

@@ -8,9 +8,10 @@ from omegadot.adapters.drake.model import Stepping
 from omegadot.adapters.protocol import Integrator
 
 CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
-FIXED = "-fixed"
+FIXED, EULER = "-fixed", "semi-implicit-euler"
 # All step y = (q, v) as one vector, v with omega in world axes, q a quaternion that is not made
-# unit again, or roll, pitch and yaw: `tests/adapters/test_drake.py` holds their formulas.
+# unit again, or roll, pitch and yaw: what follows the method in the name of the reference's scheme.
+CHARTS = {"free": "world-quaternion", "pivoted": "roll-pitch-yaw"}
 SAP = (
     "MultibodyPlant(time_step): v1 = v + h (M + h D)^-1 F, q1 = q + h N v1; the contact "
     "approximations lagged, similar and sap are the same without contact"
@@ -18,9 +19,9 @@ SAP = (
 TAMSI = "the same with the approximation tamsi, which takes damping at the step's start"
 SOLVED = "where Newton's iterations do not converge, a fixed step is halved nevertheless"
 EMBEDDED = {
-    "bogacki_shampine3": (3, "Bogacki and Shampine's 3(2)"),
-    "runge_kutta3": (3, "Kutta's method of order 3"),
-    "runge_kutta5": (5, "Dormand and Prince's 5(4)"),
+    "bogacki_shampine3": (3, "bogacki-shampine3", "Bogacki and Shampine's 3(2)"),
+    "runge_kutta3": (3, "kutta3", "Kutta's method of order 3"),
+    "runge_kutta5": (5, "dormand-prince5", "Dormand and Prince's 5(4)"),
 }
 # Order, note, and the accuracy to which a fixed step solves its equation.
 IMPLICIT = {
@@ -43,7 +44,8 @@ class Plan:
     scheme: its name in Drake, "" for a discrete plant, whose contact approximation is then named.
     order: of its errors.  fixed: whether its steps are those requested.  solves: the accuracy to
     which a fixed step solves its equation, 0 where it has none to solve.  finest_accuracy: the
-    smallest that is requested where steps are not fixed, 0 where any may be.
+    smallest that is requested where steps are not fixed, 0 where any may be.  method: the
+    reference's that it steps, "" where this has none.
     """
 
     scheme: str
@@ -53,6 +55,7 @@ class Plan:
     solves: float = 0.0
     finest_accuracy: float = 0.0
     note: str = ""
+    method: str = ""
 
     def stepping(self, timestep: float) -> Stepping:
         """What the plant is built for."""
@@ -61,17 +64,19 @@ class Plan:
 
 def _plans() -> dict[str, Plan]:
     found = {
-        "discrete": Plan("", 1, "kLagged", note=SAP),
-        "discrete-tamsi": Plan("", 1, "kTamsi", note=TAMSI),
-        "explicit_euler": Plan("explicit_euler", 1, note="y + h f(y)"),
-        "semi_explicit_euler": Plan("semi_explicit_euler", 1, note="v1 = v + h a, q1 = q + h N v1"),
+        "discrete": Plan("", 1, "kLagged", note=SAP, method="implicit-damping-euler"),
+        "discrete-tamsi": Plan("", 1, "kTamsi", note=TAMSI, method=EULER),
+        "explicit_euler": Plan("explicit_euler", 1, note="y + h f(y)", method="explicit-euler"),
+        "semi_explicit_euler": Plan(
+            "semi_explicit_euler", 1, note="v1 = v + h a, q1 = q + h N v1", method=EULER
+        ),
         "runge_kutta2": Plan(
-            "runge_kutta2", 2, note="Heun's method, the explicit trapezoidal rule"
+            "runge_kutta2", 2, note="Heun's method, the explicit trapezoidal rule", method="heun"
         ),
     }
-    for name, (order, note) in EMBEDDED.items():
+    for name, (order, method, note) in EMBEDDED.items():
         found[name] = Plan(name, order, fixed=False, note=note)
-        found[name + FIXED] = Plan(name, order, note=note)
+        found[name + FIXED] = Plan(name, order, note=note, method=method)
     for name, (order, note, solves) in IMPLICIT.items():
         found[name] = Plan(name, order, fixed=False, finest_accuracy=FINEST[order], note=note)
         found[name + FIXED] = Plan(name, order, solves=solves, note=f"{note}; {SOLVED}")
@@ -86,15 +91,20 @@ def plan_of(name: str) -> Plan | None:
     return PLANS.get(name)
 
 
-def declared_integrators() -> tuple[Integrator, ...]:
-    """Every integrator. What they step and their orders are those of free and pivoted bodies."""
+def declared_integrators(pivoted: bool = False) -> tuple[Integrator, ...]:
+    """Every integrator, with what it steps of a free body or of a pivoted one.
+
+    A free body's translation is that of its origin, where its joint is.
+    """
+    chart = CHARTS["pivoted" if pivoted else "free"]
     return tuple(
         Integrator(
             name,
-            None,
+            f"{plan.method}-{chart}" if plan.method else None,
             dict.fromkeys(CHANNELS, plan.order),
             knob="fixed-accuracy" if plan.solves else "timestep" if plan.fixed else "accuracy",
             note=plan.note,
+            coordinates="origin-world",
             finest_accuracy=plan.solves or plan.finest_accuracy,
         )
         for name, plan in PLANS.items()

@@ -62,11 +62,19 @@ def _plans() -> dict[str, Plan]:
         for name, solver, node, note in IMPLICIT
     }
     return found | {
-        "ExplicitEuler": Plan("ExplicitEuler", 1, f"explicit Euler {LIE}"),
-        "ExplicitMidpoint": Plan("ExplicitMidpoint", 2, f"the explicit midpoint rule {LIE}"),
-        "RK33": Plan("RK33", 3, f"Heun's method of order 3 {LIE}"),
+        "ExplicitEuler": Plan(
+            "ExplicitEuler", 1, f"explicit Euler {LIE}", scheme="munthe-kaas-explicit-euler"
+        ),
+        "ExplicitMidpoint": Plan(
+            *("ExplicitMidpoint", 2, f"the explicit midpoint rule {LIE}"),
+            scheme="munthe-kaas-midpoint",
+        ),
+        "RK33": Plan("RK33", 3, f"Heun's method of order 3 {LIE}", scheme="munthe-kaas-heun3"),
         "RK44": Plan("RK44", 4, f"Kutta's method {LIE}", scheme="munthe-kaas-rk4"),
-        "RK67": Plan("RK67", 6, f"Butcher's method of order 6 with seven stages {LIE}"),
+        "RK67": Plan(
+            *("RK67", 6, f"Butcher's method of order 6 with seven stages {LIE}"),
+            scheme="munthe-kaas-butcher6",
+        ),
         "VelocityVerlet": Plan("VelocityVerlet", 1, VERLET, one_step=False),
         "ODE23": Plan(
             "ODE23", 3, f"Bogacki and Shampine's 3(2) {LIE}", fixed=False, finest_accuracy=FINEST

@@ -66,7 +66,7 @@ class OpenSimAdapter(OneJointAdapter):
         return Description(
             name=self.name,
             version=version("opensim"),
-            integrators=declared_integrators(),
+            integrators=declared_integrators(self._setup == "physics"),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=ONE_BODY,

@@ -11,7 +11,8 @@ FIXED = "-fixed"
 # Of Verlet's rounds, in parts of u, in the setup "physics". It is the finest that they keep to.
 SOLVES = 1e-12
 # All step y = (q, u) as one vector, q three angles and a place, u omega and a velocity in the axes
-# of the joint's frame: `tests/adapters/test_opensim.py` holds their formulas.
+# of the joint's frame: what follows the method in the name of the reference's scheme.
+CHART = "two-frames-xyz"
 HALVES = "semi-implicit Euler, u1 = u + h a, q1 = q + h N u1, twice with half the step"
 VERLET = (
     "q1 = q + h q' + h^2/2 q'', u1 = u + h/2 (a + a(q1, u1)) in rounds of fixed-point iteration"
@@ -26,7 +27,8 @@ class Plan:
     method: its name in OpenSim.  order: of its errors.  fixed: whether its steps are those
     requested.  solves: the accuracy to which a fixed step solves its equation, 0 where it has none.
     finest_accuracy: the smallest that is requested where steps are not fixed, 0 where any may be.
-    one_step: whether a step depends on the state alone.
+    one_step: whether a step depends on the state alone.  reference: the reference's method that it
+    steps, "" where this has none.
     """
 
     method: str
@@ -36,6 +38,7 @@ class Plan:
     solves: float = 0.0
     finest_accuracy: float = 0.0
     one_step: bool = True
+    reference: str = ""
 
     @property
     def knob(self) -> Knob:
@@ -45,25 +48,25 @@ class Plan:
         return "fixed-accuracy" if self.solves else "timestep"
 
 
-# Name, order, note, finest accuracy. The latter is a matter of cost: where an error is estimated at
-# order 1 a hundredth of the accuracy takes ten times the steps.
+# Name, order, the reference's method, note, finest accuracy. The latter is a matter of cost: where
+# an error is estimated at order 1 a hundredth of the accuracy takes ten times the steps.
 METHODS = (
-    ("RungeKuttaMerson", 4, "Merson's method, the solution of order 4", 0.0),
-    ("RungeKuttaFeldberg", 4, "Fehlberg's 4(5), the solution of order 4", 0.0),
-    ("RungeKutta3", 3, "Kutta's method of order 3", 1e-9),
-    ("RungeKutta2", 2, "Heun's method, the explicit trapezoidal rule", 1e-3),
-    ("Verlet", 2, VERLET, 1e-7),
-    ("SemiExplicitEuler2", 1, HALVES, 1e-3),
-    ("ExplicitEuler", 1, "y + h f(y)", 1e-3),
+    ("RungeKuttaMerson", 4, "merson4", "Merson's method, the solution of order 4", 0.0),
+    ("RungeKuttaFeldberg", 4, "fehlberg4", "Fehlberg's 4(5), the solution of order 4", 0.0),
+    ("RungeKutta3", 3, "kutta3", "Kutta's method of order 3", 1e-9),
+    ("RungeKutta2", 2, "heun", "Heun's method, the explicit trapezoidal rule", 1e-3),
+    ("Verlet", 2, "", VERLET, 1e-7),
+    ("SemiExplicitEuler2", 1, "semi-implicit-euler-in-two", HALVES, 1e-3),
+    ("ExplicitEuler", 1, "explicit-euler", "y + h f(y)", 1e-3),
 )
 
 
 def _plans() -> dict[str, Plan]:
     found = {}
-    for name, order, note, finest in METHODS:
+    for name, order, method, note, finest in METHODS:
         found[name] = Plan(name, order, note, finest_accuracy=finest)
         solves = SOLVES if name == "Verlet" else 0.0
-        found[name + FIXED] = Plan(name, order, note, fixed=True, solves=solves)
+        found[name + FIXED] = Plan(name, order, note, fixed=True, solves=solves, reference=method)
     return found | {"CPodes": Plan("CPodes", 1, BDF, one_step=False)}
 
 
@@ -75,12 +78,15 @@ def plan_of(name: str) -> Plan | None:
     return PLANS.get(name)
 
 
-def declared_integrators() -> tuple[Integrator, ...]:
-    """Every integrator. No scheme of the reference steps angles."""
+def declared_integrators(two_frames: bool = True) -> tuple[Integrator, ...]:
+    """Every integrator. two_frames: whether the joint's frame is one of two.
+
+    The reference steps angles in two frames alone: of one, errors know no bound.
+    """
     return tuple(
         Integrator(
             name,
-            None,
+            f"{plan.reference}-{CHART}" if plan.reference and two_frames else None,
             dict.fromkeys(CHANNELS, plan.order),
             knob=plan.knob,
             note=plan.note,

@@ -15,7 +15,7 @@ from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.one_body.body_motion import body_motion
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON, SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
@@ -32,7 +32,7 @@ class ReferenceAdapter:
     @property
     def description(self) -> Description:
         """The reference and its schemes."""
-        integrators = tuple(Integrator(s.name, s.name, s.orders) for s in SCHEMES.values())
+        integrators = tuple(Integrator(s.name, s.name, s.orders) for s in COMMON.values())
         return Description(
             name="reference",
             version=__version__,

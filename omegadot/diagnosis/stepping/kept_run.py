@@ -16,7 +16,7 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize, rotation_between
-from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes import COMMON, SCHEMES, Motion, Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
@@ -254,10 +254,10 @@ def _richness(run: KeptRun) -> tuple[int, float]:
 
 def _schemes(runs: Sequence[KeptRun]) -> list[SchemeOf]:
     ways = dict.fromkeys(way for run in runs for way in distinct(run.system))
-    known = {**SCHEMES, **EXPLICIT}
+    known = {**COMMON, **EXPLICIT}
     return [
         SchemeOf(scheme_named(name), way)
         for way in sorted(ways, key=lambda way: way != "com-world")
         for name in known
-        if way in known[name].coordinates and (way == "com-world" or name in SCHEMES)
+        if way in known[name].coordinates and (way == "com-world" or name in COMMON)
     ]

@@ -15,7 +15,7 @@ from omegadot.gates.errors.verdicts import STIFF
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.coordinates import canonical
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 from omegadot.reference_impl.system import State, System
 from omegadot.written import written
 
@@ -90,7 +90,7 @@ def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
     coordinates = canonical(system, integrator.coordinates)
     return [
         SchemeKey(name, coordinates)
-        for name, scheme in SCHEMES.items()
+        for name, scheme in COMMON.items()
         if coordinates in scheme.coordinates
     ]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import wraps
-from math import atan, cos, nan, sin, sqrt
+from math import atan, atan2, cos, nan, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -116,6 +116,33 @@ def half_turn(square: Number) -> tuple[Number, Number]:
 def arctan(x: Number) -> Number:
     """``atan(x)``."""
     return atan(x) if type(x) is float else np.arctan(x)
+
+
+def arctan2(y: Number, x: Number) -> Number:
+    """The angle of the point (x, y)."""
+    return atan2(y, x) if type(y) is float and type(x) is float else np.arctan2(y, x)
+
+
+def cosine_and_sine(angle: Number) -> tuple[Number, Number]:
+    """Of an angle; NaN if it is not finite."""
+    if type(angle) is float:
+        try:
+            return cos(angle), sin(angle)
+        except ValueError:
+            return nan, nan
+    return np.cos(angle), np.sin(angle)
+
+
+def product4(a: Numbers, b: Numbers) -> list[Number]:
+    """``a b`` of two quaternions (w, x, y, z), by Hamilton's rule."""
+    w, x, y, z = a
+    p, q, r, s = b
+    return [
+        w * p - x * q - y * r - z * s,
+        w * q + x * p + y * s - z * r,
+        w * r - x * s + y * p + z * q,
+        w * s + x * r - y * q + z * p,
+    ]
 
 
 def cross3(a: Numbers, b: Numbers) -> tuple[Number, Number, Number]:

@@ -11,7 +11,7 @@ from math import cos, sin
 
 import numpy as np
 
-from omegadot.reference_impl.arithmetic.components import Numbers, cross3
+from omegadot.reference_impl.arithmetic.components import Numbers, cross3, product4
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
 
@@ -35,17 +35,6 @@ def _turn(axis: int, angle: float) -> list[float]:
     return found
 
 
-def _product(a: Numbers, b: Numbers) -> list[float]:
-    w, x, y, z = a
-    p, q, r, s = b
-    return [
-        w * p - x * q - y * r - z * s,
-        w * q + x * p + y * s - z * r,
-        w * r - x * s + y * p + z * q,
-        w * s + x * r - y * q + z * p,
-    ]
-
-
 def _axes(chart: Angles) -> list[int]:
     return ["XYZ".index(axis) for axis in chart.sequence]
 
@@ -53,10 +42,10 @@ def _axes(chart: Angles) -> list[int]:
 def quaternion_of(e: Numbers, chart: Angles) -> list[float]:
     """world_R_body of the angles, a unit quaternion between the scenario's axes."""
     first, second, third = (_turn(k, a) for k, a in zip(_axes(chart), e, strict=True))
-    own = _product(_product(first, second), third)
+    own = product4(product4(first, second), third)
     if chart.world is not None:
-        own = _product(chart.world.tolist(), own)
-    return own if chart.body is None else _product(own, conjugate(chart.body).tolist())
+        own = product4(chart.world.tolist(), own)
+    return own if chart.body is None else product4(own, conjugate(chart.body).tolist())
 
 
 def angle_rates(chart: Angles) -> Callable[[Numbers, Numbers], list[float]]:

@@ -14,17 +14,22 @@ from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
 from omegadot.reference_impl.system import Array
 
 
-def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-    """``(1 - h J₀) Δv = h v̇`` with ``J₀ = ∂v̇/∂v`` at v = 0, then as semi-implicit Euler.
+def pushed(motion: Motion, q: Array, v: Array, h: float | Array) -> Array:
+    """The v₁ of ``(1 - h J₀) (v₁ - v₀) = h v̇`` with ``J₀ = ∂v̇/∂v`` at v = 0.
 
     By equation (8) with a viscous torque ``J₀ = -d I⁻¹``, so that ``(I + h d) Δω = h I ω̇``: at
-    rest the gyroscopic term, being quadratic, has no derivative. Without damping this is
-    semi-implicit Euler.
+    rest the gyroscopic term, being quadratic, has no derivative.
     """
     a = motion.acceleration(q, v)
     push, size = h * a, natural_size(motion, v, a)
     _, jacobian = acceleration_and_jacobian(motion, q, np.zeros_like(v), size)
-    v = v + solve_one_minus(per_matrix(h) * jacobian, push)
+    found: Array = v + solve_one_minus(per_matrix(h) * jacobian, push)
+    return found
+
+
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """``pushed``, then as semi-implicit Euler, which it is without damping."""
+    v = pushed(motion, q, v, h)
     return motion.retract(q, h * v), v
 
 

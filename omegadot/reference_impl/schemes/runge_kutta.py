@@ -1,4 +1,4 @@
-"""The classical Runge-Kutta method of order 4, on any vector and in exponential coordinates."""
+"""Runge-Kutta methods: the classical one, and any on q and v or in exponential coordinates."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from omegadot.reference_impl.arithmetic.components import Numbers, formulas_of, in_components
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
+from omegadot.reference_impl.schemes.tableaus import Method
 from omegadot.reference_impl.system import Array
 
 
@@ -29,7 +30,12 @@ def _fractions(h: float) -> tuple[Array, Array, Array]:
 
 
 def step_in_exponential(
-    motion: Motion, rate: Velocity, q: Array, v: Array, h: float | Array
+    motion: Motion,
+    rate: Velocity,
+    q: Array,
+    v: Array,
+    h: float | Array,
+    method: Method = kutta,
 ) -> tuple[Array, Array]:
     """`step_coupled` on (u, v) with ``q = q₀ exp(u)``, u zero at the step's start.
 
@@ -38,7 +44,7 @@ def step_in_exponential(
     n, acceleration, retract = v.shape[-1], motion.acceleration, motion.retract
     start = np.zeros((*v.shape[:-1], 2 * n), v.dtype, "F")
     start[..., n:] = v
-    u, v = step_coupled(rate, acceleration, retract, q, start, v, h)
+    u, v = step_coupled(rate, acceleration, retract, q, start, v, h, method)
     return retract(q, u), v
 
 
@@ -50,15 +56,16 @@ def step_coupled(
     y: Array,
     x_dot: Array,
     h: float | Array,
+    method: Method = kutta,
 ) -> tuple[Array, Array]:
-    """`kutta` on y = (x, v), ``ẋ = rate(x, v)`` and ``v̇ = acceleration(place(q, x), v)``.
+    """A method on y = (x, v), ``ẋ = rate(x, v)`` and ``v̇ = acceleration(place(q, x), v)``.
 
     q: the configuration at the step's start, `place` of this x.  x_dot: the rate there.
     """
     count = x_dot.shape[-1]
     moving = _moving(rate, acceleration, place, count)
     first = joined(x_dot, acceleration(q, y[..., count:]))
-    y = kutta(lambda y: moving(q, y), y, first, h)
+    y = method(lambda y: moving(q, y), y, first, h)
     return y[..., :count], y[..., count:]
 
 

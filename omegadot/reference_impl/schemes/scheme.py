@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TypedDict
 
 import numpy as np
 
@@ -91,3 +92,16 @@ TRANSLATION = ("energy", "linear_momentum", "position")
 def every_channel(order: int) -> dict[str, int]:
     """The same order in every channel."""
     return dict.fromkeys(CHANNELS, order)
+
+
+class Orders(TypedDict):
+    """Of a scheme: the arguments of `Scheme` that declare orders."""
+
+    orders: dict[str, int]
+    special: Mapping[str, Mapping[str, int | None]]
+
+
+def explicit(order: int) -> Orders:
+    """Of an explicit Runge-Kutta method: free fall is exact from order 2 on."""
+    exact = {"linear_momentum": None, "position": None} if order > 1 else {"linear_momentum": None}
+    return {"orders": every_channel(order), "special": {"free": exact}}

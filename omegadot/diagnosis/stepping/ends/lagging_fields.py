@@ -17,7 +17,7 @@ from omegadot.diagnosis.stepping.ends.last_fields import FIELDS, ROTATION, SHIFT
 from omegadot.diagnosis.stepping.ends.moved_samples import Moved
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON, SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State
 
@@ -78,7 +78,7 @@ def _one_each(runs: Sequence[KeptRun]) -> list[KeptRun]:
 def _schemes(integrator: Integrator) -> list[SchemeOf]:
     if integrator.scheme is None:
         return [
-            SchemeOf(one, "com-world") for one in SCHEMES.values() if "com-world" in one.coordinates
+            SchemeOf(one, "com-world") for one in COMMON.values() if "com-world" in one.coordinates
         ]
     known = SCHEMES.get(integrator.scheme)
     return [SchemeOf(known, integrator.coordinates)] if known is not None else []

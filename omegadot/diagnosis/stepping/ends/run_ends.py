@@ -12,7 +12,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.ends.last_fields import other_fields
 from omegadot.diagnosis.stepping.ends.last_samples import RunEnd, scenarios_that_show
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names, scheme_of
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 from omegadot.reference_impl.schemes.scheme import Scheme
 
 MISSING = "the last step is missing: the end is the state one step before"
@@ -67,7 +67,7 @@ def _is_moved(by: SchemeOf, shift: int, short: bool, end: RunEnd) -> bool:
 def _other_scheme(ends: Sequence[RunEnd], by: SchemeOf) -> tuple[str, set[str]]:
     """By which scheme the last step of every run is."""
     shows = dict[str, set[str]]()
-    for one in SCHEMES.values():
+    for one in COMMON.values():
         if by.coordinates in one.coordinates and one != by.scheme:
             shown = scenarios_that_show(ends, by, partial(_ends_by, by, one))
             shows |= {one.name: shown} if shown else {}

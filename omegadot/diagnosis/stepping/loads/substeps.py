@@ -16,7 +16,7 @@ from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.loads.acting import TERMS, with_factors
 from omegadot.reference_impl.one_body.body_motion import body_motion
-from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes import COMMON, Motion, Scheme
 from omegadot.reference_impl.system import Array
 
 MOST_SUBSTEPS = 8
@@ -57,7 +57,7 @@ def substep_cause(named: str, part: Fraction, runs: Sequence[KeptRun]) -> str:
     loads = [load for load in LOADS_OF if load.startswith(named) or named.startswith(load)]
     places = [tuple(range(k, k + m)) for k in range(n - m + 1)]
     with np.errstate(all="ignore"):
-        for scheme in (*SCHEMES.values(), *EXPLICIT.values()):
+        for scheme in (*COMMON.values(), *EXPLICIT.values()):
             if "com-world" not in scheme.coordinates:
                 continue
             lanes = [(load, where) for load in loads for where in (*places, ())]

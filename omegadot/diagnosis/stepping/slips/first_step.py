@@ -13,7 +13,7 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.one_body.body_motion import body_motion
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 from omegadot.reference_impl.schemes.scheme import Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State
@@ -33,7 +33,7 @@ def first_step_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
             return []
         if not all(np.all(good[1:]) for good in sound):
             return []
-        others = [one for name, one in SCHEMES.items() if name != by.scheme.name]
+        others = [one for name, one in COMMON.items() if name != by.scheme.name]
         found = [one for one in others if all(_begins(run, by, one) for run in (*wrong, *short))]
         names = [one.name for one in found]
         own = by.scheme.name

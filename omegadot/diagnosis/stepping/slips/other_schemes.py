@@ -22,7 +22,7 @@ from omegadot.diagnosis.stepping.step_ends import (
     with_end,
 )
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 from omegadot.reference_impl.system import State, System
 
 SINGLE_TURN = "sine and cosine of the turn of a step are in single precision"
@@ -46,7 +46,7 @@ def other_schemes(reported: ReportedRun) -> list[str]:
     for way in sorted(distinct(system), key=lambda way: way != own):
         other = replace(reported, integrator=replace(reported.integrator, coordinates=way))
         found = list[str]()
-        for name, scheme in SCHEMES.items():
+        for name, scheme in COMMON.items():
             same = name == reported.integrator.scheme
             if way not in scheme.coordinates or (same and way == own):
                 continue  # what is declared: this is not what is wrong

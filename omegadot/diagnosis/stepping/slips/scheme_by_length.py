@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names
 from omegadot.diagnosis.wording.conditions import ODDS
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 
 SCENARIOS = 2  # at least, whose runs show either scheme alone
 
@@ -22,7 +22,7 @@ def scheme_by_length(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     if len({run.name for run, sound in zip(short, own, strict=True) if not sound}) < SCENARIOS:
         return []
     texts = dict[str, list[str]]()
-    for name, scheme in SCHEMES.items():
+    for name, scheme in COMMON.items():
         if name != by.scheme.name and by.coordinates in scheme.coordinates:
             text = _beyond(short, own, SchemeOf(scheme, by.coordinates))
             if text:

@@ -20,7 +20,7 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, plain_names
 from omegadot.diagnosis.stepping.places import step_features
 from omegadot.diagnosis.wording.conditions import ODDS
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.schemes import COMMON, Scheme
 from omegadot.reference_impl.system import Array
 
 MOST_STEPS = 8  # between two samples: of more nearly every interval may have steps of both
@@ -83,7 +83,7 @@ def _is_due(other: Scheme, by: Scheme, integrator: Integrator) -> bool:
 
 def _others(by: SchemeOf, single: Sequence[KeptRun]) -> Iterator[str]:
     """The schemes by which every single step is that is not by its own."""
-    for name in (*SCHEMES, *EXPLICIT):
+    for name in (*COMMON, *EXPLICIT):
         scheme = scheme_named(name)
         if name == by.scheme.name or by.coordinates not in scheme.coordinates:
             continue

@@ -16,7 +16,7 @@ from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.stepping.slips.stage_changes import Change, changes_of
 from omegadot.diagnosis.stepping.slips.staged_steps import STAGED
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
-from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.schemes import COMMON, Scheme
 
 EXPLAINS = 0.8  # of the runs that fail
 LEAST_RUNS = 3  # of which one shows a mistake that is made in every run
@@ -92,7 +92,7 @@ def _states_less(one: Change, other: Change) -> bool:
 def _known(name: str, shown: Sequence[Beginning]) -> Iterator[Scheme]:
     """Schemes, and known slips in the one of this name, that make all runs."""
     names = [name] if name in OF_SCHEME else []
-    known = [*SCHEMES.values(), *EXPLICIT.values()]
+    known = [*COMMON.values(), *EXPLICIT.values()]
     known += [scheme for one in names for scheme in slipped(one).values()]
     for one in shown:
         known = [scheme for scheme in known if one.made_by(scheme)]

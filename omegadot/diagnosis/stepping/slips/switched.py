@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.kept_run import LEAST, KeptRun, SchemeOf
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 
 LAST = 4  # intervals of a run, which the other scheme makes
 MOST_LOOKED_AT = 4  # runs that these are of
@@ -33,8 +33,8 @@ def switched(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     last = [_last(run) for run in failing[:MOST_LOOKED_AT]]
     last = [run for run in last if not np.any(run.sound(by))]
     texts, names = set[str](), list[str]()
-    for name in SCHEMES if last else ():
-        other = SchemeOf(SCHEMES[name], by.coordinates)
+    for name in COMMON if last else ():
+        other = SchemeOf(COMMON[name], by.coordinates)
         if name == by.scheme.name or by.coordinates not in other.scheme.coordinates:
             continue
         if all(np.all(run.sound_but_for_rounding(other)) for run in last):

@@ -1,0 +1,1 @@
+"""Numbers by which an attitude is stepped as a part of one vector, one kind a file."""
