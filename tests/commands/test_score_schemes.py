@@ -10,6 +10,8 @@ from score_line import BRICK, INERTIA, START, run_score, runge_kutta, slope, tum
 from omegadot.commands.score.declared import KNOWN
 from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Body, State, System
 
 STEP, COUNT = 0.1, 100
 MAPPED = ("--scenario", BRICK, "--rate-unit", "deg/s", "--timestep", str(STEP))
@@ -211,3 +213,12 @@ def test_angles_of_any_sequence_converge_to_the_exact_motion(sequence):
         )
     assert errors[1] < 1e-5
     assert 3.0 < np.log2(errors[0] / errors[1]) < 5.0
+
+
+def test_a_trace_in_an_engines_own_coordinates_is_recognised_where_no_usual_scheme_is_it(score):
+    """As Basilisk steps: of a pitch through half a turn, so that sigma changes to its shadow."""
+    scheme, of = SCHEMES["heun-mrp"], System((Body(np.array(1.0), np.zeros(3), np.diag(INERTIA)),))
+    start = State(START[3:], START[:3], np.zeros(3), np.zeros(3))
+    _, states = step_body(scheme, of, start, STEP, COUNT, 1)
+    table = np.concatenate((states.angular_velocity, states.orientation), axis=-1)
+    assert "it equals heun-mrp" in scheme_of(score(TIMES, table))

@@ -37,7 +37,8 @@ def test_midpoint_keeps_energy_and_momentum(moments: tuple[float, ...], dt: floa
 def test_other_schemes_drift(name: str) -> None:
     # else the test above would prove nothing about the midpoint rule
     on, initial = system([1.0, 2.0, 2.5]), start([1.0, 2.0, -1.5])
-    _, states = step_body(SCHEMES[name], on, initial, 0.05, STEPS, STEPS)
+    step = 0.05 if SCHEMES[name].orders["attitude"] < 6 else 0.1
+    _, states = step_body(SCHEMES[name], on, initial, step, STEPS, STEPS)
     momentum = angular_momentum(on, states)
     assert np.linalg.norm(momentum[-1] - momentum[0]) > 1e4 * STEPS * EPS
 

@@ -14,6 +14,7 @@ import omegadot
 from omegadot.reference_impl.coordinates import to_coordinates
 from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.schemes.charted import TABLEAUS
 from omegadot.reference_impl.stepping import step_through as step_and_time
 from omegadot.reference_impl.system import Array
 
@@ -66,16 +67,31 @@ def test_a_vector_space_is_stepped_at_the_schemes_order(name: str) -> None:
     assert abs(slope - order) <= 0.15, found
 
 
-def test_all_runge_kutta_methods_are_one_on_a_vector_space() -> None:
+@pytest.mark.parametrize("method", ["semi-implicit-euler", *TABLEAUS])
+def test_a_method_is_one_on_a_vector_space_whatever_attitudes_are_stepped_in(method: str) -> None:
+    names = [n for n in sorted(set(SCHEMES) - BODIES_ALONE) if is_by(n, method)]
     ends = [
-        step_through(SCHEMES[name], oscillator(), PLACE, SPEED, 0.05, 20, 20)[1:]
-        for name in sorted(SCHEMES)
-        if "rk4" in name
+        step_through(SCHEMES[name], oscillator(), PLACE, SPEED, 0.05, 20, 20)[1:] for name in names
     ]
-    assert len(ends) == 4
     for q, v in ends[1:]:
         assert np.max(np.abs(q - ends[0][0])) <= 20 * 16 * EPS
         assert np.max(np.abs(v - ends[0][1])) <= 20 * 16 * EPS
+
+
+def is_by(name: str, method: str) -> bool:
+    """Whether a scheme steps this method, by its name; damping is explicit, steps are whole."""
+    own = {"lie-rk4", "lie-rk4-naive"} if method == "rk4" else set[str]()
+    other = ("rescaled-momentum", "semi-implicit-euler-in-two")
+    stem = name.removeprefix("munthe-kaas-")
+    begins = stem == method or stem.startswith(f"{method}-")
+    return (begins or name in own) and not any(part in name for part in other)
+
+
+def test_every_method_is_shown_on_several_charts() -> None:
+    """Else the test above would compare nothing."""
+    shown = {method: [n for n in SCHEMES if is_by(n, method)] for method in TABLEAUS}
+    assert len(shown["rk4"]) == 6
+    assert sum(len(names) > 1 for names in shown.values()) >= 6
 
 
 def test_linearly_implicit_euler_is_stable_where_damping_is_stiff() -> None:
@@ -137,6 +153,9 @@ WRONG_ON_PURPOSE = (
 )
 
 
+STEPPING = {"Scheme", "kutta", "step_coupled", "step_in_exponential", "by_tableau", "semi_implicit"}
+
+
 def test_only_schemes_step() -> None:
     """What moves a configuration is called in `schemes` alone: there is no second copy of any.
 
@@ -157,6 +176,6 @@ def test_only_schemes_step() -> None:
             called = node.func if isinstance(node, ast.Call) else None
             name = getattr(called, "attr", getattr(called, "id", ""))
             moves = isinstance(called, ast.Attribute) and name in moving
-            if moves or name in {"Scheme", "kutta", "step_coupled", "step_in_exponential"}:
+            if moves or name in STEPPING:
                 found.append(f"{where}:{getattr(node, 'lineno', 0)} {name}")
     assert found == []

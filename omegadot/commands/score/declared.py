@@ -11,7 +11,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON, SCHEMES
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
@@ -19,8 +19,11 @@ MOST_STEPS = 1_000_000
 # A stamp this part of a step off a whole number of them is of an accumulated, or rounded, time.
 NEARLY_WHOLE = 1e-3
 ON_ANGLES = tuple(name for name, scheme in FLIGHT_SCHEMES.items() if scheme.angles)
-KNOWN = (*(name for name in FLIGHT_SCHEMES if name not in ON_ANGLES), *SCHEMES, *ON_ANGLES)
-"""The schemes by name, the plainest first."""
+USUAL = (*(name for name in FLIGHT_SCHEMES if name not in ON_ANGLES), *COMMON, *ON_ANGLES)
+"""The schemes by name that a trace is compared with, the plainest first."""
+OTHERS = tuple(name for name in SCHEMES if name not in COMMON)
+"""Those that it is compared with where it is none of these: of one engine's coordinates each."""
+KNOWN = (*USUAL, *OTHERS)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from math import gcd
 
 import numpy as np
 
-from omegadot.commands.score.declared import KNOWN, Declared
+from omegadot.commands.score.declared import OTHERS, USUAL, Declared
 from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance, filled
 from omegadot.gates.bounds.likeness import Likeness, likeness, share_of
@@ -76,8 +76,12 @@ def compare_schemes(held: Measured, declared: Declared) -> Compared:
         first = [own] if own.found.agree else first
     if first and all(first[0].agrees(channel) for channel in held.error):
         return Compared(first)
-    sought = _sought(held, declared, [name for name in KNOWN if name != named])
-    return replace(sought, schemes=first + sought.schemes)
+    sought = _sought(held, declared, [name for name in USUAL if name != named])
+    found = [*first, *sought.schemes]
+    if not any(one.found.agree for one in found) and not sought.not_sought:
+        others = _sought(held, declared, [name for name in OTHERS if name != named])
+        found += [one for one in others.schemes if one.found.agree]
+    return replace(sought, schemes=found)
 
 
 def _sought(held: Measured, declared: Declared, names: list[str]) -> Compared:

@@ -74,7 +74,9 @@ def _explicit(method: str, name: str, words: str, chart: Chart) -> Scheme:
     tableau: Tableau = TABLEAUS[method]
     orders = explicit(tableau.order)
     if chart.from_start:  # the velocity of a point that is not the centre of mass is turned
-        orders = {"orders": orders["orders"], "special": {}}
+        orders["special"] = {}
+    elif method == "heun" and not chart.in_world:  # of v̇ quadratic in ω as it is in body axes
+        orders["special"] = {**orders["special"], "torque-free": {"energy": 3}}
     return Scheme(
         name=f"{method}-{name}",
         title=f"{tableau.title} on {words}",

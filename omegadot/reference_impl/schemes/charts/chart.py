@@ -55,7 +55,7 @@ class Chart:
         """Q and v in one, of a y. start: q at the step's start."""
         place, attitude, velocity, spin = self.parts(y)
         w, *axis = q = self.quaternion(attitude)
-        if self.from_start:
+        if self.from_start and place:
             velocity = _added(velocity, cross3(spin, _arm(start, place)))
         turning = rotated((-w, *axis), spin) if self.in_world else spin
         return [*place, *q, *velocity, *turning]
@@ -67,7 +67,7 @@ class Chart:
         q, linear, pushed = moving[many : many + 4], a[:-3], a[-3:]
         velocity = moving[many + 4 : -3]
         pushed = rotated(q, pushed) if self.in_world else pushed
-        if self.from_start:  # of u = ṗ - W × (p - p₀)
+        if self.from_start and place:  # of u = ṗ - W × (p - p₀)
             carried = cross3(pushed, _arm(start, place)), cross3(spin, velocity)
             linear = [x - b - c for x, b, c in zip(linear, *carried, strict=True)]
         return [*velocity, *self.rate(attitude, spin), *linear, *pushed]

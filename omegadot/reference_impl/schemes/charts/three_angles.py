@@ -1,9 +1,10 @@
 """Three angles of the body in a frame of the world, and ω in the world's axes.
 
 ``R = F Rx(a) Ry(b) Rz(c) B``, singular where ``cos b = 0``. F, the frame's axes, is held through a
-step; B exchanges the body's axes. Other sequences are these angles in other axes: with B the turn
-by 90 degrees about y, which takes x to -z and z to x, and ``F = B⁻¹``, it is
-``R = Rz(a) Ry(b) Rx(-c)``.
+step; B exchanges the body's axes. Both are turns whose quaternions are of halves, which are exact.
+Other sequences are these angles in other axes, and to add a constant to an angle changes no step:
+of ``F = Ry(-90°) Rx(90°)`` and ``B = Rz(90°) Ry(90°)`` it is yaw, pitch and minus roll,
+``R = Rz(a + 90°) Ry(b) Rx(-c - 90°)``.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ from omegadot.reference_impl.arithmetic.components import (
 )
 from omegadot.reference_impl.schemes.charts.chart import Chart
 
-ROOT = 0.5**0.5
 NO_TURN = (1.0, 0.0, 0.0, 0.0)
 # Of the body's z-axis along the world's x-axis, up to which the world's axes are the frame. The
 # singularity is then 45 degrees away at least, and in the other frame 44.
@@ -78,14 +78,14 @@ def _back(q: Numbers) -> Numbers:
 
 
 def _one_of_two(q: Numbers) -> Numbers:
-    """The world's axes, or these turned by 90 degrees about z where they are near singular."""
+    """The world's axes, or ``Rz(90°) Rx(90°)`` where these are near singular."""
     w, x, y, z = q
     turned = abs(2 * (x * z + w * y)) > MOST
     if type(w) is float:
-        return (ROOT, 0.0, 0.0, ROOT) if turned else NO_TURN
-    return np.where(turned, ROOT, 1.0), 0.0 * w, 0.0 * w, np.where(turned, ROOT, 0.0)
+        return (0.5, 0.5, 0.5, 0.5) if turned else NO_TURN
+    half = np.where(turned, 0.5, 0.0)
+    return 1.0 - half, half, half, half
 
 
-_TURN = (ROOT, 0.0, ROOT, 0.0)
-ROLL_PITCH_YAW = three_angles(lambda _: (ROOT, 0.0, -ROOT, 0.0), _TURN)
+ROLL_PITCH_YAW = three_angles(lambda _: (0.5, 0.5, -0.5, 0.5), (0.5, -0.5, 0.5, 0.5))
 TWO_FRAMES = three_angles(_one_of_two)
