@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,3 +134,12 @@ def test_a_motion_of_arrays_is_stepped_as_one_of_components(name: str, on: Syste
         scheme.step(motion, q, v, 0.1), scheme.step(arrays, q, v, 0.1), strict=True
     ):
         assert np.array_equal(one, other)
+
+
+def test_the_page_of_formulas_has_every_scheme() -> None:
+    """By its own name, or a method's and a chart's."""
+    page = (Path(__file__).parents[2] / "docs" / "scheme-formulas.md").read_text(encoding="utf-8")
+    for name in SCHEMES:
+        chart = next((one for one in CHARTS if name.endswith(f"-{one}")), None)
+        parts = [name] if chart is None else [name.removesuffix(f"-{chart}"), chart]
+        assert all(f"`{part}`" in page for part in parts), name

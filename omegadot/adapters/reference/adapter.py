@@ -1,4 +1,4 @@
-"""The reference as an engine like any other: equation (8), stepped by every scheme there is."""
+"""The reference as an engine like any other: equation (8), stepped by every common scheme."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ReferenceAdapter:
 
     @property
     def description(self) -> Description:
-        """The reference and its schemes."""
+        """The reference and its common schemes; `run` takes the others by name as well."""
         integrators = tuple(Integrator(s.name, s.name, s.orders) for s in COMMON.values())
         return Description(
             name="reference",

@@ -78,7 +78,7 @@ def _held_to(order: ObservedOrder, declared: int | None, explained: bool) -> tup
 
 
 def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
-    """The reference's runs to hold an integrator against: every scheme's if it declares none.
+    """The reference's runs to hold an integrator against: every common one's if it declares none.
 
     None of them for an error-controlled integrator, whose steps are its own.
     """
