@@ -96,6 +96,16 @@ def test_only_failures_are_excused() -> None:
     assert with_exceptions(Check("mujoco", "sphere", "model"), PASSED, known) == PASSED
 
 
+def test_a_random_system_may_pass_where_all_are_declared_and_not_where_it_is() -> None:
+    """Caught: the command that is printed for a failing system fails the checks that hold there."""
+    check = Check("toy", "random-3-4", "scheme", "euler", timestep=0.01)
+    every = DeclaredException("toy", "toy-euler-random-*", "known", LINK, "toy.toml")
+    assert with_exceptions(check, PASSED, [every]) == PASSED
+    assert with_exceptions(check, CheckResult("fail", "off"), [every]).verdict == "declared"
+    one = DeclaredException("toy", "toy-euler-random-3-4-*", "known", LINK, "toy.toml")
+    assert with_exceptions(check, PASSED, [one]).verdict == "fail"
+
+
 def test_a_pattern_may_be_about_every_system_that_is_drawn(tmp_path: Path) -> None:
     """None is drawn here, and the pattern matches what may be; one of a single system does not."""
     drawn = f"{NAME}-semi-implicit-euler-random-*"

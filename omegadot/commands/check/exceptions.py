@@ -25,7 +25,7 @@ from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import Scenario, ScenarioError, builtin_names, load_builtin
 from omegadot.scenarios.files import read_toml
-from omegadot.scenarios.random_systems import random_scenario
+from omegadot.scenarios.random_systems import NAME, random_scenario
 
 OWN_FOLDER = Path(__file__).with_name("known")
 SUFFIX = ".exceptions.toml"
@@ -52,6 +52,10 @@ class DeclaredException:
         if check.engine != self.engine or not fnmatchcase(check.id, self.check):
             return False
         return scenario is None or all_hold(self.when, scenario)
+
+    def may_pass(self, check: Check) -> bool:
+        """Whether a check that it matches may hold: of all random systems, none is named."""
+        return NAME.fullmatch(check.scenario) is not None and check.scenario not in self.check
 
 
 def _refuse_unknown(table: dict[str, Any], known: Sequence[str], where: str) -> None:
@@ -133,12 +137,10 @@ def with_exceptions(
     check: Check,
     result: Result,
     exceptions: Iterable[DeclaredException],
-    drawn: bool = False,
     scenario: Scenario | None = None,
 ) -> Result:
     """A failure that is declared becomes "declared"; a pass that is declared to fail fails.
 
-    drawn: of a random system that was not named. It may pass: no exception is about it.
     scenario: that of the check, which an exception's limits are about.
     """
     exception = next((e for e in exceptions if e.matches(check, scenario)), None)
@@ -147,7 +149,7 @@ def with_exceptions(
     if result.verdict == "fail":
         text = f"{exception.reason} ({exception.link}): {result.settled.message}"
         return Result("declared", text, result.outcome)
-    if result.verdict == "pass" and not drawn:
+    if result.verdict == "pass" and not exception.may_pass(check):
         return Result("fail", no_longer_fails(exception))
     return result
 
