@@ -184,13 +184,14 @@ TERMS = tuple(_terms())
 
 def terms_in(heading: str) -> list[Term]:
     """The terms that a heading uses, in their order there, not as parts of longer terms."""
-    found = []
+    found = {}
     for term in TERMS:
         names = "|".join(re.escape(name) for name in (term.name, *term.also))
         place = re.search(rf"(?<![\w-])(?:{names})(?![\w-])", heading, re.IGNORECASE)
         if place:
-            found.append((place.start(), term))
-    return [term for _, term in sorted(found, key=lambda pair: pair[0])]
+            found[place.span()] = term
+    longest = [a for a in found if not any(b[0] <= a[0] < a[1] <= b[1] for b in found if b != a)]
+    return [found[span] for span in sorted(longest)]
 
 
 def linked(heading: str) -> Markup:

@@ -67,13 +67,14 @@ def flips_of(time: Array, omega: Array, system: System) -> Flips | None:
     stop = int(bad[0]) if len(bad) else len(time)
     if stop == 0:
         return Flips((), -math.inf)
-    time, along = time[:stop], _along(omega[:stop], moving_inertia(system), axis)
+    time, omega = time[:stop], omega[:stop] / (np.max(np.abs(omega[:stop])) or 1.0)
+    along, rate = _along(omega, moving_inertia(system), axis), omega @ axis
     near = np.flatnonzero(np.abs(along) > NEAR)
     turned = np.flatnonzero(along[near[1:]] * along[near[:-1]] < 0.0)
-    found = [_flip(time, along, int(near[k]), int(near[k + 1])) for k in turned]
+    found = [_flip(time, along, rate, int(near[k]), int(near[k + 1])) for k in turned]
     last = len(time) - 1
     if len(near) and len(_changes(along[near[-1] :])) == 1:
-        found.append(_flip(time, along, int(near[-1]), last))
+        found.append(_flip(time, along, rate, int(near[-1]), last))
     return Flips(tuple(found), float(time[-1]))
 
 
@@ -118,14 +119,15 @@ def _changes(along: Array) -> NDArray[np.intp]:
     return np.flatnonzero(turned[1:] != turned[:-1])
 
 
-def _flip(time: Array, along: Array, first: int, last: int) -> Flip:
+def _flip(time: Array, along: Array, rate: Array, first: int, last: int) -> Flip:
     """The one from the sample `first` to the sample `last`, which is on the other side."""
-    moments, part = time[first : last + 1], along[first : last + 1] * np.sign(along[first])
+    stretch, sign = slice(first, last + 1), np.sign(along[first])
+    moments, part = time[stretch], along[stretch] * sign
 
-    def passes(level: float, place: int) -> float:
-        share = (part[place] - level) / (part[place] - part[place + 1])
+    def passes(values: Array, level: float, place: int) -> float:
+        share = (values[place] - level) / (values[place] - values[place + 1])
         return float(moments[place] + share * (moments[place + 1] - moments[place]))
 
-    middle = passes(0.0, int(_changes(part)[-1]))
-    end = passes(-NEAR, len(part) - 2) if part[-1] < -NEAR else math.inf
-    return Flip(passes(NEAR, 0), middle, end)
+    middle = passes(rate[stretch] * sign, 0.0, int(_changes(part)[-1]))
+    end = passes(part, -NEAR, len(part) - 2) if part[-1] < -NEAR else math.inf
+    return Flip(passes(part, NEAR, 0), middle, end)
