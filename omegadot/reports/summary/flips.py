@@ -19,9 +19,10 @@ _ALIKE = 64 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class Flip:
-    """One flip, s. start: H leaves the middle axis' 45°.  time: omega along that axis changes sign.
+    """One flip, s. start: the last sample with H within 45° of the middle axis, or its opposite.
 
-    end: H comes within 45° of the opposite direction; infinite where the samples end before.
+    time: omega along that axis changes its sign.  end: the first sample with H within 45° of the
+    other direction; infinite where the samples end before.
     """
 
     start: float
@@ -121,13 +122,8 @@ def _changes(along: Array) -> NDArray[np.intp]:
 
 def _flip(time: Array, along: Array, rate: Array, first: int, last: int) -> Flip:
     """The one from the sample `first` to the sample `last`, which is on the other side."""
-    stretch, sign = slice(first, last + 1), np.sign(along[first])
-    moments, part = time[stretch], along[stretch] * sign
-
-    def passes(values: Array, level: float, place: int) -> float:
-        share = (values[place] - level) / (values[place] - values[place + 1])
-        return float(moments[place] + share * (moments[place + 1] - moments[place]))
-
-    middle = passes(rate[stretch] * sign, 0.0, int(_changes(part)[-1]))
-    end = passes(part, -NEAR, len(part) - 2) if part[-1] < -NEAR else math.inf
-    return Flip(passes(part, NEAR, 0), middle, end)
+    before = first + int(_changes(along[first : last + 1])[-1])
+    share = rate[before] / (rate[before] - rate[before + 1])
+    middle = time[before] + share * (time[before + 1] - time[before])
+    end = float(time[last]) if abs(along[last]) > NEAR else math.inf
+    return Flip(float(time[first]), float(middle), end)
