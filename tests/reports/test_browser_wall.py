@@ -6,7 +6,7 @@ import json
 
 import pytest
 from test_browser_stage import run
-from test_browser_view import NO_WEBGL, PICTURE, READY, TEXT, choose, listed, opened
+from test_browser_view import NO_WEBGL, PICTURE, PLAY, READY, TEXT, choose, listed, opened
 from turning_record import turning_record
 
 from omegadot.reports.page.page import draw_page
@@ -90,6 +90,22 @@ def test_errors_and_divergences_follow_the_clock(page):
     assert "⚑ 1.50 s" in " ".join(lines)
     assert "diverged" in names
     assert "diverged" not in cells(page)["mujoco"][2]
+
+
+def test_engines_that_diverge_together_are_announced_together(page):
+    """Caught: a reader who hears the last of five."""
+    choose(page, "view-step", "1")
+    choose(page, "view-time", "1.45")
+    page.evaluate(
+        "{ window.heard = []; new MutationObserver(() => heard.push("
+        f"{TEXT})).observe(document.getElementById('view-status'), {{ childList: true }}); }}"
+    )
+    choose(page, "view-speed", "10")
+    page.evaluate(f"{PLAY}.click()")
+    page.wait(f"{PLAY}.textContent === 'Play'")
+    (text,) = [text for text in page.evaluate("heard") if "diverges" in text]
+    for name in ("dart semi-implicit", "drake discrete", "havok step"):
+        assert f"{name} diverges from the exact solution at 1.50 s." in text
 
 
 def test_the_least_exact_integrator_may_be_chosen(page):
