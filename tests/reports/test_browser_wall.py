@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from axe_check import LOOKS, VIOLATIONS, axe
 from test_browser_stage import run
 from test_browser_view import NO_WEBGL, PICTURE, PLAY, READY, TEXT, choose, listed, opened
 from turning_record import turning_record
@@ -205,6 +206,13 @@ def test_a_narrow_window_has_three_cells_a_row_or_more(browser, path, width):
     assert page[0] >= 3
     assert page[1] == 0
     assert min(browser.evaluate(COVERED)) > 0.02
+
+
+@LOOKS
+def test_axe_finds_nothing_in_the_cells(browser, path, look):
+    opened(browser, path, **look)
+    browser.evaluate(axe() + "; 0")
+    assert browser.evaluate(VIOLATIONS.replace("document", "'#view'")) == []
 
 
 def test_in_software_a_moving_picture_has_one_sample_a_pixel(browser, path):
