@@ -81,6 +81,12 @@ The body turns over: omega along the axis of middle inertia changes its sign. Th
 the difference of its time from the exact one.
 = Unit: s
 
+flip count (never flips)
+Where no torque acts, a flip counts that leads H from within 45° of the axis of middle inertia to
+within 45° of its opposite, so that a wobble is none. A run is late where a flip of its comes after
+the exact one of the same number has ended, and early where before that one has begun.
+= Values: never, late, early or yes, one a run
+
 floor
 How far a perfect answer in double precision may be from the exact solution (in single precision
 2²⁹ times as far), because the inputs are rounded and the motion magnifies that. An error below the
@@ -178,13 +184,14 @@ TERMS = tuple(_terms())
 
 def terms_in(heading: str) -> list[Term]:
     """The terms that a heading uses, in their order there, not as parts of longer terms."""
-    found = []
+    found = {}
     for term in TERMS:
         names = "|".join(re.escape(name) for name in (term.name, *term.also))
         place = re.search(rf"(?<![\w-])(?:{names})(?![\w-])", heading, re.IGNORECASE)
         if place:
-            found.append((place.start(), term))
-    return [term for _, term in sorted(found, key=lambda pair: pair[0])]
+            found[place.span()] = term
+    longest = [a for a in found if not any(b[0] <= a[0] < a[1] <= b[1] for b in found if b != a)]
+    return [found[span] for span in sorted(longest)]
 
 
 def linked(heading: str) -> Markup:
