@@ -147,7 +147,7 @@ def test_a_longest_step_is_named_where_most_steps_are_many_times_as_long() -> No
         return euler(motion, q, v, min(h, 1.0 / 300.0), np.zeros(3))
 
     for scheme in ("semi-implicit-euler", None):
-        (text,) = causes(step, scheme, ((0.0035, 1), (0.3, 1), (0.9, 1), (0.003, 4)))
+        (text,) = causes(step, scheme, ((0.0035, 1), (5.0, 1), (20.0, 1), (0.003, 4)))
         assert text == (
             "the length of a step is limited to 0.00333333 s, and the clock goes on as requested"
         )
