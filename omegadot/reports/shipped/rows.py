@@ -15,6 +15,7 @@ from omegadot.reports.shipped.figures import Figures, figures_of, restored
 from omegadot.reports.shipped.flips import Flipping, in_time
 
 FLIPS_ON = "t-handle"
+LESS = 0.995  # nearer to 1 a ratio is 1 in two digits
 AS_SHIPPED = SETUPS[1]
 Knob = TypeVar("Knob")
 Run = tuple[str, str, float | None, float | None]
@@ -50,10 +51,18 @@ class ShippedRow:
 
     @property
     def mends_most(self) -> tuple[str, float] | None:
-        """The setting with the least ratio, below 1, and that ratio; None where no setting has."""
+        """The setting with the least ratio, below 1 in two digits, and that ratio, if any has."""
         ratios = {name: self.ratio(run) for name, run in self.settings.items()}
-        known = {name: ratio for name, ratio in ratios.items() if ratio is not None and ratio < 1.0}
+        known = {
+            name: ratio for name, ratio in ratios.items() if ratio is not None and ratio < LESS
+        }
         return min(known.items(), key=lambda pair: pair[1]) if known else None
+
+    @property
+    def alike(self) -> bool:
+        """Whether the mean attitude errors of both setups are equal in two digits."""
+        ratio = self.ratio(self.physics)
+        return LESS <= ratio <= 1.0 / LESS if ratio is not None else self.physics == self.as_shipped
 
 
 def middle(values: Iterable[Knob], key: Any = None) -> Knob:
