@@ -110,8 +110,9 @@ def _shipped(record: Record) -> dict[str, Any]:
     rows = shipped_rows(record)
     if not rows:
         return {}
-    heads, cells = shipped_table.heads(rows), shipped_table.cells(rows)
-    return {"heads": heads, "rows": cells, "note": shipped_table.note(rows)}
+    shown, more = shipped_table.folded(shipped_table.cells(rows))
+    texts = {"rows": shown, "more": more, "note": shipped_table.note(rows)}
+    return {"heads": shipped_table.heads(rows), **texts}
 
 
 def _anchors(names: tuple[str, ...]) -> dict[str, str]:

@@ -11,6 +11,8 @@ from omegadot.reports.text.numbers import knob, short
 from omegadot.written import written
 
 TITLE = "As shipped"
+ALIKE = "nothing: both are alike"
+MOST = 12  # rows; of more those that are alike are folded away
 _WHO, _LAST = ("engine", "integrator"), ("what mends most",)
 _FLIPS = ("flips, as shipped", "flips, physics")
 _ALWAYS = (
@@ -29,14 +31,22 @@ def heads(rows: Iterable[ShippedRow]) -> Cells:
 
 
 def cells(rows: Iterable[ShippedRow]) -> list[Cells]:
-    """The texts of the table; integrators of an engine of which all texts are equal share a row."""
-    found = []
+    """The texts of the table, of those that differ first; integrators of an engine of which all
+    texts are equal share a row.
+    """
+    found: list[Cells] = []
     for engine, own in groupby(rows, lambda row: row.engine):
         shared: dict[Cells, list[str]] = {}
         for row in own:
             shared.setdefault(_texts(row), []).append(row.integrator)
         found += [(engine, ", ".join(names), *texts) for texts, names in shared.items()]
-    return found
+    return sorted(found, key=lambda texts: texts[-1] == ALIKE)
+
+
+def folded(found: list[Cells]) -> tuple[list[Cells], list[Cells]]:
+    """The rows that are shown, and those below them that are folded away, where there are many."""
+    first = sum(texts[-1] != ALIKE for texts in found)
+    return (found[:first], found[first:]) if first and len(found) > MOST else (found, [])
 
 
 def note(rows: tuple[ShippedRow, ...]) -> str:
@@ -58,16 +68,25 @@ def line(rows: tuple[ShippedRow, ...]) -> str:
     """One sentence for a terminal; "" of a run in one setup."""
     if not rows:
         return ""
-    engines = list(dict.fromkeys(row.engine for row in rows))
+    engines = [list(own) for _, own in groupby(rows, lambda row: row.engine)]
     told = f"{TITLE}, on {rows[0].scenario}"
     if rows[0].exact_flips:
         shipped, physics = (
-            sum(_all_flip(rows, engine, setup) for engine in engines)
+            sum(all(row.flipping(getattr(row, setup)) == "yes" for row in own) for own in engines)
             for setup in ("as_shipped", "physics")
         )
         told += f": {shipped} of {len(engines)} engines flip in time, {physics} set up for physics"
-    mended = {f"{row.engine} {mends(row)}": None for row in rows if row.mends_most}
-    return f"{told}. What mends most: {'; '.join(mended) or 'no single setting'}."
+    mended = "; ".join(filter(None, map(_mended, engines)))
+    return f"{told}. What mends most: {mended or 'no single setting'}."
+
+
+def _mended(rows: list[ShippedRow]) -> str:
+    """An engine with the setting that mends most of all that its integrators have; "" for none."""
+    found = [most for row in rows if (most := row.mends_most)]
+    if not found:
+        return ""
+    name, ratio = min(found, key=lambda most: most[1])
+    return f"{rows[0].engine} {name}, error × {short(ratio)}"
 
 
 def mends(row: ShippedRow) -> str:
@@ -80,7 +99,7 @@ def mends(row: ShippedRow) -> str:
         shown = told.get(flips, f", flips {flips}") if flips else ""
         return f"{name}: error × {short(ratio)}{shown}"
     if row.alike:
-        return "nothing: both are alike"
+        return ALIKE
     return f"none of {len(row.settings)}" if row.settings else "–"
 
 
@@ -112,8 +131,3 @@ def _attitude(run: Figures) -> str:
     if run.attitude_end is None or run.attitude_mean is None:
         return "–" if run.outcome == "ok" else run.outcome
     return f"{short(run.attitude_end)} rad, mean {short(run.attitude_mean)}"
-
-
-def _all_flip(rows: Iterable[ShippedRow], engine: str, setup: str) -> bool:
-    own = [row for row in rows if row.engine == engine]
-    return all(row.flipping(getattr(row, setup)) == "yes" for row in own)
