@@ -19,7 +19,7 @@ BOTH = [f"{SHIPPED}:BrakedAdapter", f"{SHIPPED}:PlainAdapter"]
 def handle(tmp_path_factory: pytest.TempPathFactory) -> RunResult:
     """The T-handle at one step, its record written."""
     out = tmp_path_factory.mktemp("both") / "run"
-    return api.run("t-handle", [*BOTH, "exact"], timesteps=0.002, setup="both", out=out)
+    return api.run("t-handle", [*BOTH, "exact"], timesteps=0.005, setup="both", out=out)
 
 
 def test_one_setting_mends_an_engine_that_never_flips(handle: RunResult) -> None:

@@ -9,7 +9,7 @@ from omegadot.adapters.protocol import mends
 from omegadot.reports.shipped.figures import Figures
 from omegadot.reports.shipped.flips import flip_times, in_time
 from omegadot.reports.shipped.rows import ShippedRow, middle, scenario_of
-from omegadot.reports.shipped.table import cells, folded, heads, line
+from omegadot.reports.shipped.table import cells, heads, line
 from omegadot.reports.shipped.table import mends as mending
 
 INERTIA = np.diag([3.0, 1.0, 2.0])  # the intermediate axis is z
@@ -112,16 +112,17 @@ def test_integrators_that_do_the_same_share_a_row() -> None:
     assert line(()) == ""
 
 
-def test_of_many_rows_those_that_are_alike_are_folded_away() -> None:
+def test_rows_that_flip_otherwise_or_never_come_first() -> None:
     same = row(physics=row().as_shipped, settings={})
-    alike = [ShippedRow(**{**vars(same), "engine": f"e{k}"}) for k in range(12)]
-    found = cells([*alike, row()])
-    assert found[0][0] == "jolt"
-    assert [len(part) for part in folded(found)] == [1, 12]
-    assert folded(found[1:]) == (found[1:], [])
-    assert folded(cells([*alike[:3], row()]))[1] == []
-    one = line((*alike, row(), ShippedRow(**{**vars(same), "engine": "jolt"})))
-    assert one.endswith("What mends most: jolt gyroscopic, error × 0.75.")
+    less, more = (
+        row(as_shipped=Figures("ok", EXACT, 0.5, 0.2, mean), settings={}) for mean in (0.1, 0.2)
+    )
+    flips = Figures("ok", EXACT, 0.5, 0.2, 0.1)
+    alike = row(as_shipped=flips, physics=flips, settings={})
+    named = {"alike": alike, "same": same, "less": less, "more": more, "otherwise": row()}
+    rows = tuple(ShippedRow(**{**vars(one), "engine": name}) for name, one in named.items())
+    assert [found[0] for found in cells(rows)] == ["otherwise", "same", "more", "less", "alike"]
+    assert line(rows).endswith("What mends most: otherwise gyroscopic, error × 0.75.")
 
 
 def test_the_middle_and_the_scenario_of_the_table() -> None:

@@ -110,8 +110,8 @@ def _shipped(record: Record) -> dict[str, Any]:
     rows = shipped_rows(record)
     if not rows:
         return {}
-    shown, more = shipped_table.folded(shipped_table.cells(rows))
-    texts = {"rows": shown, "more": more, "note": shipped_table.note(rows)}
+    found, most = shipped_table.cells(rows), shipped_table.MOST
+    texts = {"rows": found[:most], "more": found[most:], "note": shipped_table.note(rows)}
     return {"heads": shipped_table.heads(rows), **texts}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from itertools import groupby
 
@@ -12,7 +13,7 @@ from omegadot.written import written
 
 TITLE = "As shipped"
 ALIKE = "nothing: both are alike"
-MOST = 12  # rows; of more those that are alike are folded away
+MOST = 12  # rows of the page; the others are folded away
 _WHO, _LAST = ("engine", "integrator"), ("what mends most",)
 _FLIPS = ("flips, as shipped", "flips, physics")
 _ALWAYS = (
@@ -22,6 +23,7 @@ _ALWAYS = (
     "attitude error, physics",
 )
 Cells = tuple[str, ...]
+Order = tuple[bool, bool, bool, float]
 
 
 def heads(rows: Iterable[ShippedRow]) -> Cells:
@@ -31,22 +33,27 @@ def heads(rows: Iterable[ShippedRow]) -> Cells:
 
 
 def cells(rows: Iterable[ShippedRow]) -> list[Cells]:
-    """The texts of the table, of those that differ first; integrators of an engine of which all
-    texts are equal share a row.
+    """The texts of the table; integrators of an engine of which all texts are equal share a row.
+
+    First those that flip otherwise as shipped, those that never do, and what differs the most.
     """
-    found: list[Cells] = []
+    found: list[tuple[Order, Cells]] = []
     for engine, own in groupby(rows, lambda row: row.engine):
-        shared: dict[Cells, list[str]] = {}
+        shared: dict[Cells, list[ShippedRow]] = {}
         for row in own:
-            shared.setdefault(_texts(row), []).append(row.integrator)
-        found += [(engine, ", ".join(names), *texts) for texts, names in shared.items()]
-    return sorted(found, key=lambda texts: texts[-1] == ALIKE)
+            shared.setdefault(_texts(row), []).append(row)
+        for texts, same in shared.items():
+            names = ", ".join(row.integrator for row in same)
+            found.append((_order(same[0]), (engine, names, *texts)))
+    return [texts for _, texts in sorted(found, key=lambda pair: pair[0])]
 
 
-def folded(found: list[Cells]) -> tuple[list[Cells], list[Cells]]:
-    """The rows that are shown, and those below them that are folded away, where there are many."""
-    first = sum(texts[-1] != ALIKE for texts in found)
-    return (found[:first], found[first:]) if first and len(found) > MOST else (found, [])
+def _order(row: ShippedRow) -> Order:
+    """Of a row among the others: what comes first is smallest."""
+    ratio = row.ratio(row.physics)
+    shipped = row.flipping(row.as_shipped)
+    same = shipped == row.flipping(row.physics)
+    return same, shipped != "no", row.alike, math.inf if ratio is None else ratio
 
 
 def note(rows: tuple[ShippedRow, ...]) -> str:
