@@ -9,8 +9,8 @@ from typing import Any
 import polars as pl
 
 from omegadot.commands.progress import Count, Reporter
+from omegadot.commands.run.single_settings import SingleSettings
 from omegadot.harness.outcome import Outcome, RunRequest
-from omegadot.harness.single_settings import SingleSettings
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import SETUPS, YARDSTICKS
 

@@ -37,10 +37,9 @@ class Term:
 # formula or unit.
 _TEXT = """
 as shipped
-The setup in which an engine keeps all its defaults. The table of this name puts it beside the setup
-physics, on the T-handle where that is run, with the middle step or accuracy of each integrator.
-What mends most is the setting that leaves the smallest mean attitude error when the engine as
-shipped has it alone; settings are given in the engine's own words.
+The table of this name puts engines with all their defaults beside the same in the setup physics, on
+the T-handle where that is run, at the middle step or accuracy. What mends most is the setting, in the
+engine's own words, that leaves the smallest mean attitude error where it alone is mended.
 = Formula: mean attitude error with the setting / that without; none where no ratio is below 0.995
 
 cluster (clusters, identical trajectories)
@@ -88,6 +87,13 @@ The body turns over: omega along the axis of middle inertia changes its sign. Th
 the difference of its time from the exact one.
 = Unit: s
 
+flips in time
+The middles between the exact flips cut a run into parts, and an engine flips in time (yes) where each
+part has one flip of its own. It is late or early where it has flipped less or more often up to the
+first middle, or the end of the run, at which the numbers differ; no is no flip at all.
+= Formula: a flip leads from u ≥ 1/2 to u ≤ −1/2 or back, its time is that of u = 0; u = ω·e / |ω|, e
+  the axis of middle inertia
+
 floor
 How far a perfect answer in double precision may be from the exact solution (in single precision
 2²⁹ times as far), because the inputs are rounded and the motion magnifies that. An error below the
@@ -99,13 +105,6 @@ One of the six questions asked of an engine: model, equation, scheme, invariants
 cost. Five are judged, by bounds that follow from physics and floating point; the cost of a step is
 measured and not judged.
 = Formula: value ≤ bound
-
-flip (flips)
-A body that spins about its axis of middle inertia turns over, so that omega points the other way in
-it. The middles between the exact flips cut the run into parts. An engine flips in time (yes) where
-each part has one flip. It is late or early where it has flipped less or more often up to the first
-middle, or the end of the run, at which the numbers differ; no is no flip at all.
-= Formula: u = ω·e / |ω| goes from ≥ 1/2 to ≤ −1/2 or back, e that axis; s, where u = 0
 
 growth
 The largest factor by which the motion magnifies a small deviation before time t. It is about 1 for
