@@ -38,8 +38,8 @@ class Term:
 _TEXT = """
 as shipped
 The table of this name puts engines with all their defaults beside the same in the setup physics, on
-the T-handle where that is run, at the middle step or accuracy. What mends most is the setting, in the
-engine's own words, that leaves the smallest mean attitude error where it alone is mended.
+the T-handle where that is run, at the middle step or accuracy. What mends most is the setting, in
+the engine's own words, that leaves the smallest mean attitude error where it alone is mended.
 = Formula: mean attitude error with the setting / that without; none where no ratio is below 0.995
 
 cluster (clusters, identical trajectories)
@@ -88,11 +88,11 @@ the difference of its time from the exact one.
 = Unit: s
 
 flips in time
-The middles between the exact flips cut a run into parts, and an engine flips in time (yes) where each
-part has one flip of its own. It is late or early where it has flipped less or more often up to the
-first middle, or the end of the run, at which the numbers differ; no is no flip at all.
-= Formula: a flip leads from u ≥ 1/2 to u ≤ −1/2 or back, its time is that of u = 0; u = ω·e / |ω|, e
-  the axis of middle inertia
+The middles between the exact flips cut a run into parts, and an engine flips in time (yes) where
+each part has one flip of its own. It is late or early where it has flipped less or more often up to
+the first middle, or the end of the run, at which the numbers differ; no is no flip at all.
+= Formula: a flip leads from u ≥ 1/2 to u ≤ −1/2 or back, its time is that of u = 0; u = ω·e / |ω|,
+  with e the axis of middle inertia
 
 floor
 How far a perfect answer in double precision may be from the exact solution (in single precision
@@ -162,8 +162,7 @@ them a small deviation grows exponentially, and so do rounding errors.
 
 setup (settings, switched off)
 How an engine is configured for a run. In physics, defaults that disturb the motion (sleeping,
-contacts, implicit damping) are switched off; as-shipped leaves all defaults. A run in both has each
-engine twice.
+contacts, implicit damping) are switched off; as-shipped leaves all defaults.
 = Values: physics, as-shipped
 
 verdict (verdicts)
