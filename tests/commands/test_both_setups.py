@@ -9,7 +9,9 @@ import pytest
 from command_line import ENGINES, omegadot, quick_scenario
 
 import omegadot as api
+from omegadot.commands.run.both import run_as_shipped
 from omegadot.commands.run.result import RunResult
+from omegadot.harness.outcome import Outcome, RunRequest
 
 SHIPPED = ENGINES / "shipped.py"
 BOTH = [f"{SHIPPED}:BrakedAdapter", f"{SHIPPED}:PlainAdapter"]
@@ -84,6 +86,14 @@ def test_a_run_in_one_setup_has_no_such_table(tmp_path: Path) -> None:
     found = api.run(quick_scenario(tmp_path), BOTH[1], timesteps=0.01, setup="as-shipped")
     assert found.record.as_shipped == ()
     assert "As shipped" not in found.record.markdown()
+
+
+def test_an_interrupted_first_half_has_no_second() -> None:
+    def execute(request: Any, report: Any) -> Outcome:
+        raise AssertionError("it is not to be run")
+
+    for first in (Outcome([], [], [], True, []), Outcome([], [], [], False, [])):
+        assert run_as_shipped(first, RunRequest([], []), execute, print) is None
 
 
 @pytest.mark.parametrize("setup", ["bothh", "as-shipped+damping"])

@@ -82,7 +82,8 @@ def line(rows: tuple[ShippedRow, ...]) -> str:
             sum(all(row.flipping(getattr(row, setup)) == "yes" for row in own) for own in engines)
             for setup in ("as_shipped", "physics")
         )
-        told += f": {shipped} of {len(engines)} engines flip in time, {physics} set up for physics"
+        count = f"{shipped} of {len(engines)} engines flip in time, {physics} set up for physics"
+        told += f": with every integrator {count}"
     mended = "; ".join(filter(None, map(_mended, engines)))
     return f"{told}. What mends most: {mended or 'no single setting'}."
 
