@@ -41,6 +41,7 @@ THIRD_PARTY = {
         "sapien",
         "jax",
         "jaxsim",
+        "idyntree",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }

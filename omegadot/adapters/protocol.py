@@ -9,6 +9,7 @@ from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 Setup = Literal["physics", "as-shipped"]
+WITH = "+"  # as-shipped+NAME: as shipped, with the setting of this name mended
 Format = Literal["urdf", "mjcf"]
 Channel = Literal[
     "omega_dot",
@@ -30,6 +31,14 @@ FEATURES = (
 """What an engine may declare that it can do."""
 ONE_BODY = frozenset(FEATURES) - {"batch"}
 """The features of an engine that takes a single body under every load."""
+
+
+def mends(setup: str, setting: str) -> bool:
+    """Whether the default behind one of `Description.settings` is mended under a setup.
+
+    All are under ``physics``, none under ``as-shipped``, this one under ``as-shipped+SETTING``.
+    """
+    return setup in ("physics", f"as-shipped{WITH}{setting}")
 
 
 class UnsupportedError(Exception):
@@ -74,6 +83,8 @@ class Description:
     precision: of the numbers that it keeps and computes with, by which rounding is judged.
     conventions: how the engine itself keeps states (frames, orders), one clause each.
     switched_off: defaults that disturb the motion and were turned off for the ``physics`` setup.
+    settings: those of them that can be mended alone and act on a body without contacts, in the
+    engine's own words, whatever the setup. Each makes ``as-shipped+NAME`` a setup, see `mends`.
     features: what it can do, of `FEATURES`. Each that is a call's name needs that call.
     importers: the formats of robot files that the engine's own reader takes. For each the adapter
     has ``load_file(system, format)``, which does what `Adapter.load` does with a model that the
@@ -90,6 +101,7 @@ class Description:
     licence: str = ""
     links: tuple[str, ...] = ()
     importers: tuple[Format, ...] = ()
+    settings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,6 +123,7 @@ class Adapter(Protocol):
     """An engine behind the harness.
 
     A class is built with ``Engine(setup="physics")`` and must not import its engine before that.
+    Other setups are "as-shipped", and "as-shipped+NAME" for those who describe settings.
     States cross this border in the project's frames only, whatever the engine keeps inside.
     """
 

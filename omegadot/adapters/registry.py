@@ -41,6 +41,7 @@ EXTRAS: dict[str, str] = {
     "mjx-float32": "omegadot.adapters.mjx.adapter:MjxFloat32Adapter",
     "jaxsim": "omegadot.adapters.jaxsim.adapter:JaxsimAdapter",
     "jaxsim-float32": "omegadot.adapters.jaxsim.adapter:JaxsimFloat32Adapter",
+    "idyntree": "omegadot.adapters.idyntree.adapter:IDynTreeAdapter",
 }
 """Engines that an extra installs, by the name before a hyphen: ``pip install 'omegadot[mjx]'``."""
 NODE: dict[str, str] = {
@@ -59,6 +60,7 @@ _MODULES = {
     "sapien": ("sapien",),
     "mjx": ("jax", "mujoco.mjx"),
     "jaxsim": ("jax", "jaxsim"),
+    "idyntree": ("idyntree",),
 }
 
 

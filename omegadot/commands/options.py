@@ -37,6 +37,14 @@ class Setup(StrEnum):
     as_shipped = "as-shipped"
 
 
+class Setups(StrEnum):
+    """One of the setups, or both."""
+
+    physics = "physics"
+    as_shipped = "as-shipped"
+    both = "both"
+
+
 def option(metavar: str, text: str, *names: str, **more: Any) -> Any:
     """An option: name of its value, help, and its own name where the argument has another."""
     return typer.Option(*names, metavar=metavar, help=text, **more)

@@ -29,9 +29,11 @@ def nearest(term: str, known: Iterable[str]) -> str:
     return f"choose {', '.join(first)} or {last}" if first else f"choose {last}"
 
 
-def check_setup(setup: object) -> None:
-    """Raise UsageError unless it is a setup: any other name would leave shipped defaults on."""
-    if setup not in (known := get_args(Setup)):
+def check_setup(setup: object, *more: str) -> None:
+    """Raise UsageError unless it is a setup, or one of `more`: any other name would leave shipped
+    defaults on.
+    """
+    if setup not in (known := (*get_args(Setup), *more)):
         raise UsageError(f"--setup {setup}: no such setup; {nearest(str(setup), known)}.")
 
 

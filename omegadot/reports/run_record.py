@@ -7,12 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from omegadot.reports.notebook import framed
 from omegadot.reports.record import record as stored
 from omegadot.reports.record.record import Record, write_record
 from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.summary.reasons import cause_of
+
+if TYPE_CHECKING:
+    from omegadot.reports.shipped.rows import ShippedRow
 
 _BROKEN = ("crashed", "timeout", "raised")
 
@@ -79,6 +83,13 @@ class RunRecord(Record):
         from omegadot.reports.summary.summary import summarise
 
         return str(self.run.get("headline") or headline(summarise(self)))
+
+    @cached_property
+    def as_shipped(self) -> tuple[ShippedRow, ...]:
+        """Each engine as shipped beside the same set up for physics; () of a run in one setup."""
+        from omegadot.reports.shipped.rows import shipped_rows
+
+        return shipped_rows(self)
 
     def page(self) -> str:
         """The report: one HTML text that needs nothing else."""

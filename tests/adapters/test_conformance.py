@@ -132,6 +132,7 @@ PACKAGES = {
     "exudyn": "exudyn",
     "opensim": "opensim",
     "mjx": "jax",
+    "idyntree": "idyntree",
 }
 
 

@@ -28,9 +28,9 @@ from test_conformance import FEW, TENSORS, angular_bound, linear_bound
 from omegadot.adapters.jaxsim.adapter import JaxsimAdapter, JaxsimFloat32Adapter
 from omegadot.adapters.jaxsim.coordinates import coordinates_of
 from omegadot.adapters.jaxsim.integrators import NAMES, TURNING
-from omegadot.adapters.jaxsim.programs import ROWS, STATES
 from omegadot.adapters.protocol import Adapter, UnsupportedError
 from omegadot.adapters.registry import is_absent
+from omegadot.adapters.xla_loop import ROWS, STATES
 from omegadot.reference_impl.kinematics import at_point
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.rotations import (

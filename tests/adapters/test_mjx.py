@@ -25,8 +25,8 @@ from test_conformance import TENSORS, angular_bound, cases, linear_bound
 
 from omegadot.adapters.mjx.adapter import MjxAdapter, MjxFloat32Adapter
 from omegadot.adapters.mjx.integrators import KINDS
-from omegadot.adapters.mjx.programs import ROWS, STATES
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
+from omegadot.adapters.xla_loop import ROWS, STATES
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, normalize

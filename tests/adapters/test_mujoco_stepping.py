@@ -95,7 +95,7 @@ def assert_equal_to_rounding(
 
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("setup", ["physics", "as-shipped"])
+@pytest.mark.parametrize("setup", ["physics", "as-shipped", "as-shipped+mjDSBL_EULERDAMP"])
 def test_steps_equal_the_declared_scheme(setup: Setup, name: str, load: str) -> None:
     """Every load acts in every stage; a step in the mass centre's velocity, another scheme, a
 

@@ -392,6 +392,28 @@ def test_as_shipped_they_slow_a_body_down(name: str, factor: float) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "setting"),
+    [
+        ("cannon-es", "angularDamping"),
+        ("havok", "HP_Body_SetAngularDamping"),
+        ("jolt-physics", "mAngularDamping"),
+        ("physx-js-webidl", "angularDamping"),
+    ],
+)
+def test_each_setting_is_mended_alone(name: str, setting: str) -> None:
+    """One keeps omega, and no other does: a sphere has no gyroscopic term."""
+    found = {}
+    for own in built(name, "as-shipped").description.settings:
+        adapter = CommandAdapter(command_of(name), f"as-shipped+{own}")
+        assert not adapter.description.switched_off
+        adapter.load(of([2.0, 2.0, 2.0]))
+        end = adapter.run(TURNED, "step", STEP, 1, 1).state[-1].angular_velocity
+        found[own] = bool(norm(end - TURNED.angular_velocity) <= FEW * SINGLE * norm(end))
+    assert len(found) > 1
+    assert found == {own: own == setting for own in found}
+
+
+@pytest.mark.parametrize(
     ("name", "limit"),
     [
         ("havok", 100.0 * (1 - 0.1 * STEP)),

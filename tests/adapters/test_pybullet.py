@@ -139,6 +139,16 @@ def test_as_shipped_a_multibody_loses_its_energy_and_maximal_coordinates_do_not(
     assert all(abs(spin - 1.0) <= 4 * EPS for spin in spins.values())
 
 
+def test_each_setting_is_mended_alone() -> None:
+    """Of these angularDamping alone keeps the omega of a sphere."""
+    of = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),), Load())
+    start = State(NO_TURN, np.array([1.0, 0.0, 0.0]), np.zeros(3), np.zeros(3))
+    for own in pybullet(of, "as-shipped").description.settings:
+        end = pybullet(of, f"as-shipped+{own}").run(start, "multibody", STEP, 1, 1).state[-1]
+        kept = abs(float(end.angular_velocity[0]) - 1.0) <= 4 * EPS
+        assert kept == (own == "angularDamping")
+
+
 def test_as_shipped_a_motor_stops_a_pivoted_body() -> None:
     sphere = Body(np.array(1.0), np.zeros(3), np.eye(3))
     of, spin = System((sphere,), Load(pivot=np.zeros(3))), np.array([1.0, 0.0, 0.0])

@@ -206,6 +206,14 @@ def test_as_shipped_omega_is_damped_and_has_its_gyroscopic_term() -> None:
     assert norm(end.angular_velocity - turned) <= 0.2 * plain
 
 
+def test_each_setting_is_mended_alone() -> None:
+    """Of these angular_damping alone keeps the omega of a sphere."""
+    for own in sapien(SPHERE, "as-shipped").description.settings:
+        found = ended(SPHERE, TURNED, f"as-shipped+{own}").angular_velocity
+        kept = norm(found - TURNED.angular_velocity) <= FEW * SINGLE * norm(found)
+        assert kept == (own == "angular_damping")
+
+
 def test_as_shipped_omega_is_cut_to_100_rad_per_s() -> None:
     for setup, most in (("as-shipped", 100.0), ("physics", 200.0)):
         found = ended(SPHERE, spun(0.0, 0.0, 200.0), setup).angular_velocity

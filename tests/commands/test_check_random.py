@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -62,9 +63,10 @@ def test_wrong_numbers_are_refused(arguments: dict[str, Any]) -> None:
 def test_an_exception_may_excuse_a_random_system_and_requires_nothing_of_it() -> None:
     known = DeclaredException("toy", "toy-*-equation", "slow", "https://example.org", "toy.toml")
     check, fails = Check("toy", "random-0-1", "equation"), Result("fail", "off")
-    assert with_exceptions(check, fails, [known], drawn=True).verdict == "declared"
-    assert with_exceptions(check, PASSED, [known], drawn=True) == PASSED
-    assert with_exceptions(check, PASSED, [known]).verdict == "fail"
+    assert with_exceptions(check, fails, [known]).verdict == "declared"
+    assert with_exceptions(check, PASSED, [known]) == PASSED
+    named = replace(known, check="toy-random-0-1-equation")
+    assert with_exceptions(check, PASSED, [named]).verdict == "fail"
 
 
 @pytest.fixture(scope="module")

@@ -29,6 +29,7 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[sapien]'",
     ".venv/bin/pip install -e '.[mjx]'",
     ".venv/bin/pip install -e '.[jaxsim]'",
+    ".venv/bin/pip install -e '.[idyntree]'",
     ".venv/bin/omegadot engines --install node",
 )
 

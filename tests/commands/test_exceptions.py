@@ -1,12 +1,15 @@
 """Declared exceptions: they excuse what they name, and are held to it."""
 
+import re
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 from command_line import WRONG, Result, omegadot, quick_scenario
 
 from omegadot.adapters.registry import OURS
+from omegadot.commands.check.exception_conditions import read_conditions
 from omegadot.commands.check.exceptions import (
     OWN_FOLDER,
     DeclaredException,
@@ -19,6 +22,7 @@ from omegadot.commands.check.result import Result as CheckResult
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import read_record
+from omegadot.scenarios import load_builtin
 
 LINK = "https://example.org/issues/17"
 NAME = "nogyroscopic"
@@ -92,6 +96,16 @@ def test_only_failures_are_excused() -> None:
     assert with_exceptions(Check("mujoco", "sphere", "model"), PASSED, known) == PASSED
 
 
+def test_a_random_system_may_pass_where_all_are_declared_and_not_where_it_is() -> None:
+    """Caught: the command that is printed for a failing system fails the checks that hold there."""
+    check = Check("toy", "random-3-4", "scheme", "euler", timestep=0.01)
+    every = DeclaredException("toy", "toy-euler-random-*", "known", LINK, "toy.toml")
+    assert with_exceptions(check, PASSED, [every]) == PASSED
+    assert with_exceptions(check, CheckResult("fail", "off"), [every]).verdict == "declared"
+    one = DeclaredException("toy", "toy-euler-random-3-4-*", "known", LINK, "toy.toml")
+    assert with_exceptions(check, PASSED, [one]).verdict == "fail"
+
+
 def test_a_pattern_may_be_about_every_system_that_is_drawn(tmp_path: Path) -> None:
     """None is drawn here, and the pattern matches what may be; one of a single system does not."""
     drawn = f"{NAME}-semi-implicit-euler-random-*"
@@ -99,6 +113,62 @@ def test_a_pattern_may_be_about_every_system_that_is_drawn(tmp_path: Path) -> No
     assert result.code == 0, result.out
     result = checked(declaration(f"{NAME}-*-quick-*", f"{NAME}-random-7-7-model"), tmp_path)
     assert "'nogyroscopic-random-7-7-model' matches no check" in result.out
+
+
+@pytest.mark.parametrize(
+    ("limit", "code"), [("moments_product_below = 1.0", 1), ("moments_ratio_above = 1.5", 0)]
+)
+def test_an_exception_is_about_the_bodies_within_its_limits(
+    tmp_path: Path, limit: str, code: int
+) -> None:
+    """Caught: an exception of small bodies that excuses every other fault of all of them.
+
+    The quick scenario's moments are 1, 2 and 2.5 kg m^2.
+    """
+    text = ALL.replace('reason = "', f'when = {{ {limit} }}\nreason = "')
+    result = checked(text, tmp_path)
+    assert result.code == code, result.out
+    assert ("DECLARED" in result.out) == (code == 0)
+    assert ("FAIL " in result.out) == (code == 1)
+    assert "matches no check" not in result.out
+    ran = checked(text, tmp_path, "run")
+    assert ran.code == code
+    assert ran.out.count("fail") == 0 if code == 0 else "fail" in ran.out
+
+
+def test_the_quantities_that_limits_are_about() -> None:
+    driven, thrown = load_builtin("driven-body"), load_builtin("free-bar")
+    moments = np.linalg.eigvalsh(driven.body.inertia)
+    for scenario, key, value in (
+        (driven, "moments_product", float(np.prod(moments))),
+        (driven, "moments_ratio", float(moments[2] / moments[0])),
+        (driven, "torque", float(np.linalg.norm(driven.load.torque[0].value))),
+        (driven, "angular_velocity", float(np.linalg.norm(driven.initial.angular_velocity))),
+        (thrown, "speed", float(np.linalg.norm(thrown.initial.linear_velocity))),
+    ):
+        assert value > 0.0
+        for factor, below in ((1.001, True), (0.999, False)):
+            limits = {f"{key}_below": value * factor}, {f"{key}_above": value * factor}
+            found = [read_conditions(limit, "here")[0].holds(scenario) for limit in limits]
+            assert found == [below, not below], key
+
+
+@pytest.mark.parametrize(
+    ("when", "message"),
+    [
+        ("{ moment_product_below = 1 }", "write moments_product_below"),
+        ("{ speed_below = 'slow' }", "speed_below is 'slow'; give a number in SI units"),
+        ("{ speed_below = nan }", "give a number in SI units"),
+        ("{}", "give it as a table of limits"),
+        ("7", "when is 7; give it as a table of limits"),
+    ],
+)
+def test_limits_that_cannot_be_read(tmp_path: Path, when: str, message: str) -> None:
+    file = tmp_path / "known.toml"
+    file.write_text(declaration("a-*").replace('reason = "', f'when = {when}\nreason = "'))
+    with pytest.raises(UsageError, match=re.escape(message)) as raised:
+        read_exceptions(file)
+    assert str(raised.value).startswith(f"{file}: exception 1: when")
 
 
 def test_they_stand_next_to_an_adapter(tmp_path: Path) -> None:

@@ -65,6 +65,22 @@ def principal(limit: float) -> Change:
     return change
 
 
+def sphere(tensor: Array) -> Array:
+    moments = np.linalg.eigvalsh(tensor)
+    near = moments[2] - moments[0] < 0.01 * moments[2]
+    return np.asarray(np.mean(moments) * np.eye(3)) if near else tensor
+
+
+def top_or_sphere(tensor: Array) -> Array:
+    """All three where the outermost are near, two where these are."""
+    moments, axes = np.linalg.eigh(tensor)
+    for alike in ([0, 1, 2], [0, 1], [1, 2]):
+        if moments[alike[-1]] - moments[alike[0]] < 0.01 * moments[alike[-1]]:
+            moments[alike] = np.mean(moments[alike])
+            break
+    return np.asarray((axes * moments) @ axes.T)
+
+
 def without_small(tensor: Array) -> Array:
     kept = (np.abs(tensor) > 0.12 * np.max(np.diag(tensor))) | np.eye(3, dtype=bool)
     return np.where(kept, tensor, 0.0)
@@ -87,10 +103,17 @@ BODIES = tuple(
         )
     )
 )
-TURNED = tuple(
-    case(f"turned-{k}", {"torque": BODY_TORQUE}, 1.0, (TURN @ np.diag(m) @ TURN.T).tolist())
-    for TURN in (np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0,)
-    for k, m in enumerate(([1.0, 1.0002, 1.7], [1.0, 1.4, 1.7], [1.1, 1.7, 1.7008], [1, 1.01, 1.5]))
+TURN = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
+
+
+def turned(*moments: list[float]) -> tuple[Any, ...]:
+    tensors = [(TURN @ np.diag(m) @ TURN.T).tolist() for m in moments]
+    return tuple(case(f"t-{k}", {"torque": BODY_TORQUE}, 1.0, t) for k, t in enumerate(tensors))
+
+
+TURNED = turned([1.0, 1.0002, 1.7], [1.0, 1.4, 1.7], [1.1, 1.7, 1.7008], [1, 1.01, 1.5])
+NEAR_SPHERES = turned(
+    [1.0, 1.001, 1.003], [1.2, 1.2024, 1.2048], [1.0, 1.03, 1.04], [1.0, 1.006, 1.6]
 )
 BETWEEN = "a limit between 0.069 and 0.2 %"
 
@@ -118,6 +141,20 @@ BETWEEN = "a limit between 0.069 and 0.2 %"
             TURNED,
             "in the dynamics, principal moments that differ by less than a limit between 0.047 and "
             "1 % are taken as equal: each is their mean",
+        ),
+        (
+            sphere,
+            (*SPIN, *SOLVE),
+            NEAR_SPHERES,
+            "in the dynamics, principal moments that differ by less than a limit between 0.39 and "
+            "3.9 % are taken as equal: all three are a third of the trace",
+        ),
+        (
+            top_or_sphere,
+            (*SPIN, *SOLVE),
+            NEAR_SPHERES,
+            "in the dynamics, principal moments that differ by less than a limit between 0.96 and "
+            "3 % are taken as equal: two are their mean, and all three where the outermost are",
         ),
         (
             without_small,

@@ -138,6 +138,21 @@ def test_steps_of_another_length_in_each_run_are_named(
     assert not any("one at least" in text for text in found)  # no step here is that long
 
 
+def test_a_longest_step_is_named_where_most_steps_are_many_times_as_long() -> None:
+    """Caught: silence, as no search for a length begins so far from the one requested."""
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        return euler(motion, q, v, min(h, 1.0 / 300.0), np.zeros(3))
+
+    for scheme in ("semi-implicit-euler", None):
+        (text,) = causes(step, scheme, ((0.0035, 1), (5.0, 1), (20.0, 1), (0.003, 4)))
+        assert text == (
+            "the length of a step is limited to 0.00333333 s, and the clock goes on as requested"
+        )
+
+
 def test_the_scheme_is_known_by_what_is_right_in_the_runs_of_few_scenarios() -> None:
     """None is declared, and in the runs that show most no step has its length."""
 

@@ -242,6 +242,16 @@ def weaker_with_height(system: System, states: State) -> Acceleration:
     return Acceleration(true.angular, true.linear - 3e-7 * g * states.position[:, 2:])
 
 
+def of_a_planet(system: System, states: State) -> Acceleration:
+    """Of a small one: the law of squares, which no line through a few places is."""
+    true, g = forward_dynamics(system, states), system.load.gravity
+    if system.load.pivot is not None or not np.any(g):
+        return true
+    height = -(states.position @ g) / np.linalg.norm(g)
+    part = (5000.0 / (5000.0 + height)) ** 2
+    return Acceleration(true.angular, true.linear + (part - 1.0)[:, None] * g)
+
+
 def quartic_damping(system: System, states: State) -> Acceleration:
     w = states.angular_velocity
     return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) ** 1.5 * w)
@@ -355,6 +365,11 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "height": (
         weaker_with_height,
         "gravity changes with the place: by -3e-7 of it a metre along z",
+    ),
+    "planet": (
+        of_a_planet,
+        "gravity falls with the height z of the centre of mass above the world's origin, as "
+        "(E / (E + z))^2 with E = 5000 m",
     ),
     "gravity-up": (
         under(gravity=lambda s: s.load.gravity[[0, 2, 1]] * np.array([1.0, 1.0, -1.0])),

@@ -149,6 +149,7 @@ def test_accelerations_may_be_written_over_by_the_next(name: str, on: object) ->
 WRONG_ON_PURPOSE = (
     *("slips", "on_quaternion", "memory", "solved", "acting", "explicit_schemes"),
     *("staged_steps", "iterates", "turn_limits", "mixed_turns", "commutators", "jacobians"),
+    "implicit_gyroscopic",
     "tolerances",
 )
 

@@ -49,6 +49,27 @@ def test_a_large_error_of_sound_engines_is_said_and_what_to_do(record, capsys):
     assert summarise(failed).accuracy is None
 
 
+def test_of_many_engines_of_one_order_the_worst_is_named(record):
+    """Caught: a paragraph that lists the integrators of eighteen engines."""
+    where, more = ["sphere", "semi-implicit"], {"unit": "rad", "note": "explained"}
+    names = [f"engine{number}" for number in range(5)]
+    dart = [task for task in record.run["tasks"] if task["engine"] == "dart"]
+    engine = next(e for e in record.run["engines"] if e["name"] == "dart")
+    engines = [*record.run["engines"], *({**engine, "name": name} for name in names)]
+    tasks = [*record.run["tasks"], *({**task, "engine": name} for name in names for task in dart)]
+    errors = [
+        metric(where[0], name, where[1], 0.005, "trajectory", "attitude", "error_max", size, **more)
+        for size, name in enumerate(names, 2)
+    ]
+    advice = summarise(
+        with_metrics(with_run(record, engines=engines, tasks=tasks), *errors)
+    ).accuracy
+    assert (
+        "order 1 (7 engines, engine4 semi-implicit is worst) is off by up to 6 rad" in advice.text
+    )
+    assert "order 4 (mujoco RK4) by" in advice.text
+
+
 def test_a_large_drift_is_said_where_the_attitude_is_right(record):
     where = ["sphere", "dart", "semi-implicit", 0.005, "invariants", "angular_momentum"]
     advice = summarise(with_metrics(record, metric(*where, "drift_full", 0.03))).accuracy

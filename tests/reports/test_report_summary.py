@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import polars as pl
 import pytest
 from changed_records import cell, first_of, with_run, with_task
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
@@ -119,6 +120,24 @@ def test_the_headline_of_a_sound_run(record):
     (spread,) = remarks(summarise(record))
     assert "spun-again" in spread
     assert "1.5e-9 rad (8.6e-8 deg, mujoco RK4, step 0.005 s)" in spread
+
+
+def test_a_headline_counts_many_engines_and_lists_few(record):
+    """Caught: eighteen names before the first figure."""
+    names = [f"engine{number}" for number in range(8)]
+
+    def like_mujoco(rows):
+        found = [row for row in rows if row.get("engine", row.get("name")) == "mujoco"]
+        key = "engine" if "engine" in found[0] else "name"
+        return [*rows, *({**row, key: name} for name in names for row in found)]
+
+    grown = {key: like_mujoco(record.run[key]) for key in ("tasks", "engines")}
+    rows = like_mujoco(record.metrics.to_dicts())
+    rows = [row for row in rows if (row["engine"], row["gate"]) != ("dart", "equation")]
+    metrics = pl.DataFrame(rows, schema=record.metrics.schema)
+    summary = summarise(replace(record, run={**record.run, **grown}, metrics=metrics))
+    assert headline(summary).startswith("9 of 10 engines agree with the Newton–Euler equations")
+    assert "dart holds every gate, and gives no omega-dot at a state." in headline(summary)
 
 
 def test_a_body_that_cannot_be_is_named_next_to_the_headline(record):

@@ -84,3 +84,19 @@ def test_runs_that_left_no_trajectory_are_left_out(record: Record) -> None:
     kept = record.trajectories.filter(pl.col("engine") != "dart")
     found = failing(Record(record.run, record.metrics, kept), engine="dart")
     assert opened(found)["sphere"][0] == ["mujoco Euler"]
+
+
+def test_every_engine_is_shown_where_more_than_three_ran() -> None:
+    """Caught: the reference counted, so that an everyday run of three engines opens with all."""
+    engines = {name: {"Euler": 1} for name in ("reference", "mujoco", "dart", "drake")}
+    for more, expected in (({}, False), ({"havok": {"step": 1}}, True)):
+        record = build(("sphere",), engines=engines | more, steps=(0.01,))
+        assert everyone(record) is expected
+        assert everyone(failing(record, engine="dart")) is expected
+
+
+def everyone(record: Record) -> bool:
+    charts = {name: chart for name, chart in chart_deviations(record).items() if chart.units}
+    lines = lines_of(charts.values(), record.run["engines"])
+    (scenario,) = view_payload(record, charts, lines)[0]["scenarios"]
+    return bool(scenario["everyone"])

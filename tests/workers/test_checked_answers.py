@@ -199,6 +199,8 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"links": "https://"}, "description.links is of type str"),
         ({"features": "free"}, "description.features is of type str"),
         ({"features": frozenset({"teleport"})}, "names 'teleport'; give one of free, pivot, grav"),
+        ({"settings": ("damping", "damping")}, "description.settings names 'damping'"),
+        ({"settings": ("",)}, "description.settings names ''"),
         ({"importers": ("sdf",)}, "description.importers names 'sdf'; give one of urdf, mjcf"),
     ],
 )

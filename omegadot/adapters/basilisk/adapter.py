@@ -25,6 +25,7 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
+    mends,
 )
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -42,6 +43,7 @@ CONVENTIONS = (
     "times are whole nanoseconds; steps that are none are taken by calls of the integrator",
 )
 SWITCHED_OFF = ("the absolute tolerance of 1e-8 of error-controlled integrators: the accuracy",)
+SETTINGS = ("setAbsoluteTolerance",)
 FEATURES = frozenset(
     {"free", "gravity", "torque", "full_inertia", "offset_com", "forward_dynamics"}
 )
@@ -81,6 +83,7 @@ class BasiliskAdapter(OneJointAdapter):
             integrators=declared_integrators(),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=FEATURES,
             licence="ISC",
             links=LINKS,
@@ -128,5 +131,5 @@ class BasiliskAdapter(OneJointAdapter):
 
     def _model(self, plan: Plan, accuracy: float | None) -> BasiliskModel:
         relative = None if plan.fixed else accuracy
-        absolute = relative if self._setup == "physics" else None
+        absolute = relative if mends(self._setup, "setAbsoluteTolerance") else None
         return BasiliskModel(self._engine, self._system, plan.kind, relative, absolute)

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from omegadot.adapters.dart.joint import DartJoint
-from omegadot.adapters.dart.model import SWITCHED_OFF, DartModel
+from omegadot.adapters.dart.model import SETTINGS, SWITCHED_OFF, DartModel
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
@@ -73,6 +73,7 @@ class DartAdapter(OneJointAdapter):
             integrators=(SEMI_IMPLICIT,),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=ONE_BODY,
             licence="BSD-2-Clause",
             links=LINKS,
@@ -80,7 +81,7 @@ class DartAdapter(OneJointAdapter):
         )
 
     def _built(self, system: System, via: Format | Literal[""]) -> DartJoint:
-        model = DartModel(self._engine, system, via, physics=self._setup == "physics")
+        model = DartModel(self._engine, system, via, setup=self._setup)
         return DartJoint(model, system)
 
     def run(

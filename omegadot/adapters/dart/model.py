@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from omegadot.adapters.body_files import urdf_of
-from omegadot.adapters.protocol import Format, UnsupportedError
+from omegadot.adapters.protocol import Format, Setup, UnsupportedError, mends
 from omegadot.reference_impl.system import Array, System
 
 SWITCHED_OFF = (
@@ -19,6 +19,7 @@ SWITCHED_OFF = (
     "so that attitudes near the identity are not rotation vectors below 1e-3 rad, which DART "
     "expands to second order",
 )
+SETTINGS = ("setDeactivationOptions", "setTransformFromParentBodyNode")
 # math::expMapRot takes 1 + [r] + [r]^2/2 for |r| < 1e-3, off by |r|^3/6. A permutation of the axes
 # turns without rounding.
 TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -46,7 +47,7 @@ class DartModel:
         system: System,
         via: Format | Literal[""] = "",
         *,
-        physics: bool,
+        setup: Setup,
     ) -> None:
         dynamics: Any = engine.dynamics
         self.isometry: Any = engine.math.Isometry3
@@ -56,8 +57,7 @@ class DartModel:
         self.skeleton, self.joint, self.node = self._made(engine, system, via)
         self.world.addSkeleton(self.skeleton)
         self.turn: Array = np.eye(3)
-        if physics:
-            self._switch_off()
+        self._mend(setup)
 
     def _made(
         self, engine: ModuleType, system: System, via: Format | Literal[""]
@@ -83,12 +83,15 @@ class DartModel:
             node.setInertia(engine.dynamics.Inertia(float(body.mass), center, inertia))
         return skeleton, joint, node
 
-    def _switch_off(self) -> None:
+    def _mend(self, setup: Setup) -> None:
         """What ``SWITCHED_OFF`` lists; old versions lack some of it."""
-        if hasattr(self.world, "setDeactivationOptions"):
+        sleeps = hasattr(self.world, "setDeactivationOptions")
+        if sleeps and mends(setup, "setDeactivationOptions"):
             options = self.world.getDeactivationOptions()
             options.mEnabled = False
             self.world.setDeactivationOptions(options)
-        self.joint.setLimitEnforcement(False)
-        self.turn = TURN
-        self.joint.setTransformFromParentBodyNode(self.isometry(TURN, np.zeros(3)))
+        if setup == "physics":
+            self.joint.setLimitEnforcement(False)
+        if mends(setup, "setTransformFromParentBodyNode"):
+            self.turn = TURN
+            self.joint.setTransformFromParentBodyNode(self.isometry(TURN, np.zeros(3)))

@@ -11,7 +11,7 @@ import numpy as np
 
 from omegadot.adapters.drake.integrators import declared_integrators, plan_of
 from omegadot.adapters.drake.joint import DrakeJoint
-from omegadot.adapters.drake.model import SWITCHED_OFF, DrakeModel, Stepping
+from omegadot.adapters.drake.model import SETTINGS, SWITCHED_OFF, DrakeModel, Stepping
 from omegadot.adapters.drake.stepping import (
     NO_OTHER_JOINT,
     DrakeStepper,
@@ -26,6 +26,7 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
+    mends,
 )
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State, System
@@ -77,6 +78,7 @@ class DrakeAdapter(OneJointAdapter):
             integrators=declared_integrators(self._pivoted),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=ONE_BODY,
             licence="BSD-3-Clause",
             links=LINKS,
@@ -123,7 +125,7 @@ class DrakeAdapter(OneJointAdapter):
         if plan.scheme:
             own = stepper.integrate(plan.scheme, timestep if plan.fixed else times[-1])
             own.set_fixed_step_mode(plan.fixed)
-            wanted = plan.solves if self._setup == "physics" else 0.0
+            wanted = plan.solves if mends(self._setup, "set_target_accuracy") else 0.0
             if accuracy or wanted:
                 own.set_target_accuracy(accuracy or wanted)
         each = self._pivoted or not plan.fixed  # stop at every step, or where steps have to end

@@ -21,6 +21,7 @@ SWITCHED_OFF = (
     "the accuracy of 1e-3 or so to which fixed implicit steps are solved: 1e-12, or 1e-8 of "
     "velocity_implicit_euler",
 )
+SETTINGS = ("set_target_accuracy",)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from omegadot.adapters.exudyn.joint import ExudynJoint, coordinates, states
 from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import Kind
 from omegadot.adapters.exudyn.stepping import (
+    SETTINGS,
     is_finite,
     run_by_accuracy,
     run_fixed,
@@ -27,6 +28,7 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
+    mends,
 )
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.stepping import kept_steps
@@ -70,7 +72,7 @@ class ExudynAdapter(OneJointAdapter):
         engine.config.printToConsole = False
         self._engine = engine
         self._setup: Setup = setup
-        self._axes = Axes(turned=setup == "physics")
+        self._axes = Axes(turned=mends(setup, "physicsInertia"))
 
     @property
     def description(self) -> Description:
@@ -81,6 +83,7 @@ class ExudynAdapter(OneJointAdapter):
             integrators=declared_integrators(),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=ONE_BODY,
             licence="LicenseRef-EXUDYN-General-License",
             links=LINKS,

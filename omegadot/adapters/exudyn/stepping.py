@@ -15,9 +15,10 @@ from omegadot.adapters.exudyn.integrators import SOLVES, Plan
 from omegadot.adapters.exudyn.joint import place
 from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import NODES
-from omegadot.adapters.protocol import Setup, UnsupportedError
+from omegadot.adapters.protocol import Setup, UnsupportedError, mends
 from omegadot.reference_impl.system import Array, State
 
+SETTINGS = ("physicsInertia", "newton", "relativeTolerance")
 SHORTEST = 1e-9  # of a sample's spacing: the least step of an error-controlled run
 ROOT_OF_LARGEST = 2.0**512  # the least number whose square is not finite
 
@@ -29,11 +30,11 @@ def settings_of(exudyn: Any, plan: Plan, setup: Setup, accuracy: float | None = 
     own = found.timeIntegration
     own.solverType = getattr(exudyn.DynamicSolverType, plan.solver)
     own.adaptiveStep = own.automaticStepSize = not plan.fixed
-    if setup == "physics" and not plan.explicit:
+    if mends(setup, "newton") and not plan.explicit:
         own.newton.relativeTolerance = own.newton.absoluteTolerance = SOLVES
     if accuracy:
         own.absoluteTolerance = own.relativeTolerance = accuracy
-    if setup == "physics" and not plan.fixed:
+    if mends(setup, "relativeTolerance") and not plan.fixed:
         own.relativeTolerance = 0.0
     return found
 

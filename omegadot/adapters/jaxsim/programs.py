@@ -12,10 +12,8 @@ import numpy as np
 from omegadot.adapters.jaxsim.coordinates import Coordinates
 from omegadot.adapters.jaxsim.integrators import NAMES
 from omegadot.adapters.jaxsim.model import Engine, described_model, model_with
+from omegadot.adapters.xla_loop import in_batches, logged_steps, rows_of_run
 from omegadot.reference_impl.system import Array, Load
-
-ROWS = 512  # samples a call of the loop: its cost vanishes, and memory does not grow with a run
-STATES = 256  # at once: more are taken in several calls, as each number of them is a program
 
 
 class Programs:
@@ -67,34 +65,16 @@ class Programs:
         return program
 
     def _steps(self, integrator: str) -> Any:
-        """``(body, loads, gravity, data, timestep, steps, every)`` to ROWS rows and the last data.
-
-        A row is logged at each `every`-th step and the last.
-        """
+        """``(body, loads, gravity, data, timestep, counts)``, as `logged_steps` has it."""
         jax, api = self._engine.jax, self._engine.api
-        jnp, lax = jax.numpy, jax.lax
 
-        def program(
-            body: Any, loads: Any, gravity: Any, start: Any, h: Any, steps: Any, every: Any
-        ) -> Any:
+        def program(body: Any, loads: Any, gravity: Any, start: Any, h: Any, counts: Any) -> Any:
             model = self._model(body, gravity, h, integrator)
 
-            def step(_: Any, data: Any) -> Any:
+            def step(data: Any) -> Any:
                 return api.model.step(model, data, link_forces=self._forces(data, loads))
 
-            def sample(carry: Any) -> Any:
-                count, done, data, rows = carry
-                taken = jnp.minimum(every, steps - done)
-                data = lax.fori_loop(0, taken, step, data)
-                return count + 1, done + taken, data, rows.at[count].set(self._row_of(data))
-
-            rows, nothing = jnp.zeros((ROWS, 13), h.dtype), jnp.zeros_like(steps)
-            _, _, last, rows = lax.while_loop(
-                lambda carry: (carry[0] < ROWS) & (carry[1] < steps),
-                sample,
-                (nothing, nothing, start, rows),
-            )
-            return rows, last
+            return logged_steps(jax, step, self._row_of, start, counts)
 
         return program
 
@@ -145,14 +125,9 @@ class Loaded:
         return self._programs.of(kind, given)(*given)
 
     def _in_batches(self, kind: str, *columns: Array) -> Array:
-        """A program's answers for n rows of each column; the last batch is filled with its end."""
-        rows, found = len(columns[0]), []
         with self._engine.active():
-            for first in range(0, rows, STATES):
-                taken = np.minimum(np.arange(first, first + STATES), rows - 1)
-                batch = [self.rounded(column[taken]) for column in columns]
-                found.append(np.array(self._call(kind, *batch), float))
-        return np.concatenate(found)[:rows]
+            own = [self.rounded(column) for column in columns]
+            return in_batches(lambda *batch: self._call(kind, *batch), *own)
 
     def begin(self, row: Array) -> tuple[Any, Array]:
         """`JaxSimModelData` of a row, and the row that it has."""
@@ -170,10 +145,8 @@ class Loaded:
 
     def run(self, data: Any, kind: str, timestep: float, steps: int, every: int) -> list[Any]:
         """Rows at each `every`-th step and the last."""
-        h, most, found = self.rounded(timestep), ROWS * every, []
+        h = self.rounded(timestep)
         with self._engine.active():
-            for done in range(0, steps, most):
-                left = min(most, steps - done)
-                rows, data = self._call(kind, data, h, np.int32(left), np.int32(min(every, left)))
-                found.append(np.asarray(rows)[: -(-left // every)])
-        return found
+            return rows_of_run(
+                lambda at, counts: self._call(kind, at, h, counts), data, steps, every
+            )

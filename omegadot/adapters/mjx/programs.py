@@ -11,10 +11,8 @@ import numpy as np
 
 from omegadot.adapters.mjx.model import Engine
 from omegadot.adapters.mujoco.model import BODY
+from omegadot.adapters.xla_loop import in_batches, logged_steps, rows_of_run
 from omegadot.reference_impl.system import Array, Load
-
-ROWS = 512  # samples a call of the loop: its cost vanishes, and memory does not grow with a run
-STATES = 256  # at once: more are taken in several calls, as each number of them is a program
 
 
 class Programs:
@@ -47,38 +45,24 @@ class Programs:
         )
 
     def _steps(self, structure: Any, kind: str) -> Any:
-        """``(numbers, applied, row, timestep, steps, every)`` to ROWS rows and the last one.
+        """``(numbers, applied, row, timestep, counts)`` to the rows and the last of `logged_steps`.
 
-        A row is qpos and qvel, logged at each `every`-th step and the last. They are all that a
-        step hands on, and XLA leaves out what of `mjx.Data` they do not need.
+        A row is qpos and qvel. They are all that a step hands on, and XLA leaves out what of
+        `mjx.Data` they do not need.
         """
         jax, mjx = self._engine.jax, self._engine.mjx
-        jnp, lax = jax.numpy, jax.lax
 
-        def program(numbers: Any, applied: Any, start: Any, h: Any, steps: Any, every: Any) -> Any:
+        def program(numbers: Any, applied: Any, start: Any, h: Any, counts: Any) -> Any:
             model = jax.tree.unflatten(structure, numbers)
             integrator = mjx.IntegratorType[kind]
             model = model.tree_replace({"opt.timestep": h, "opt.integrator": integrator})
 
-            def step(_: Any, row: Any) -> Any:
+            def step(row: Any) -> Any:
                 data = self._data(model, applied, row[: model.nq], row[model.nq :])
                 data = mjx.step(model, data)
-                return jnp.concatenate((data.qpos, data.qvel))
+                return jax.numpy.concatenate((data.qpos, data.qvel))
 
-            def sample(carry: Any) -> Any:
-                count, done, row, rows = carry
-                taken = jnp.minimum(every, steps - done)
-                row = lax.fori_loop(0, taken, step, row)
-                return count + 1, done + taken, row, rows.at[count].set(row)
-
-            rows = jnp.zeros((ROWS, len(start)), start.dtype)
-            nothing = jnp.zeros_like(steps)
-            _, _, last, rows = lax.while_loop(
-                lambda carry: (carry[0] < ROWS) & (carry[1] < steps),
-                sample,
-                (nothing, nothing, start, rows),
-            )
-            return rows, last
+            return logged_steps(jax, step, lambda row: row, start, counts)
 
         return jax.jit(program)
 
@@ -131,14 +115,9 @@ class Loaded:
         return self._called[kind](*given)
 
     def _in_batches(self, kind: str, *columns: Array) -> Array:
-        """A program's answers for n rows of each column; the last batch is filled with its end."""
-        rows, found = len(columns[0]), []
         with self._engine.active():
-            for first in range(0, rows, STATES):
-                taken = np.minimum(np.arange(first, first + STATES), rows - 1)
-                batch = [self.rounded(column[taken]) for column in columns]
-                found.append(np.array(self._call(kind, *batch), float))
-        return np.concatenate(found)[:rows]
+            own = [self.rounded(column) for column in columns]
+            return in_batches(lambda *batch: self._call(kind, *batch), *own)
 
     def forward(self, qpos: Array, qvel: Array) -> Array:
         """``qacc`` of `mjx.forward` at n states, (n, nv)."""
@@ -150,11 +129,9 @@ class Loaded:
 
     def run(self, start: Array, kind: str, timestep: float, steps: int, every: int) -> list[Any]:
         """Rows (qpos, qvel) at the start, each `every`-th step and the last."""
-        row, h, most = self.rounded(start), self.rounded(timestep), ROWS * every
-        found = [row[None]]
+        row, h = self.rounded(start), self.rounded(timestep)
         with self._engine.active():
-            for done in range(0, steps, most):
-                left = min(most, steps - done)
-                rows, row = self._call(kind, row, h, np.int32(left), np.int32(min(every, left)))
-                found.append(np.asarray(rows)[: -(-left // every)])
-        return found
+            return [
+                row[None],
+                *rows_of_run(lambda at, counts: self._call(kind, at, h, counts), row, steps, every),
+            ]

@@ -20,6 +20,7 @@ from omegadot.adapters.mujoco.integrators import (
 )
 from omegadot.adapters.mujoco.model import (
     BODY,
+    SETTINGS,
     apply_setup,
     body_of,
     build_model,
@@ -34,6 +35,7 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
+    mends,
 )
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
@@ -71,6 +73,7 @@ class MujocoAdapter:
             integrators=declared_integrators(mujoco, self._case()),
             conventions=_CONVENTIONS,
             switched_off=switched_off(mujoco) if self._setup == "physics" else (),
+            settings=tuple(n for n in SETTINGS if hasattr(mujoco.mjtDisableBit, n)),
             features=ONE_BODY,
             licence="Apache-2.0",
             links=_LINKS,
@@ -86,7 +89,7 @@ class MujocoAdapter:
             offset=offset and not pivoted,
             falls=bool(np.any(load.gravity)),
             damped=bool(np.any(load.damping)),
-            euler_damps=self._setup == "as-shipped",
+            euler_damps=not mends(self._setup, "mjDSBL_EULERDAMP"),
             turns_torque=bool(np.any(load.torque_world) or (pivoted and np.any(load.gravity))),
         )
 

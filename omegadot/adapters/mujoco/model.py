@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.adapters.protocol import Setup, UnsupportedError
+from omegadot.adapters.protocol import Setup, UnsupportedError, mends
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, System
 from omegadot.written import written
@@ -26,6 +26,7 @@ DISABLED = {
     "mjDSBL_CONSTRAINT": "the constraint solver",
     "mjDSBL_WARMSTART": "warm start of the constraint solver from the step before",
 }
+SETTINGS = ("mjDSBL_AUTORESET", "mjDSBL_EULERDAMP")  # the others act on contacts and constraints
 
 
 _WINDOWS = "MUJOCO_GL"  # read by MuJoCo as it is imported
@@ -140,15 +141,16 @@ def write_body(mujoco: Any, model: Any, body: Body) -> None:
 
 
 def apply_setup(mujoco: Any, model: Any, setup: Setup) -> None:
-    """Turn off the defaults that disturb the motion, or leave every default of MuJoCo as it is."""
-    if setup == "as-shipped":
-        return
+    """Turn off the defaults that disturb the motion, or leave every default of MuJoCo as it is, or
+    all but one.
+    """
     for name in DISABLED:
         flag = getattr(mujoco.mjtDisableBit, name, None)
-        if flag is not None:
+        if flag is not None and mends(setup, name):
             model.opt.disableflags |= int(flag)
-    model.opt.enableflags = 0
-    model.opt.density = model.opt.viscosity = 0.0
+    if setup == "physics":
+        model.opt.enableflags = 0
+        model.opt.density = model.opt.viscosity = 0.0
 
 
 def body_of(model: Any) -> Body:

@@ -2,10 +2,12 @@
 'use strict';
 const { Unsupported } = require('./channel.js');
 const { conjugate, principal, product, rotated, turnedDiagonal } = require('./rotations.js');
+const { mends } = require('./setups.js');
 
 const MOST_TURN = Math.PI / 4; // rad in a step; beyond, attitudes turn by less than omega does, whatever is set
 const NEVER_ASLEEP = 4; // DISABLE_DEACTIVATION, which the binding does not name
 const SWITCHED_OFF = ['sleep (setActivationState with DISABLE_DEACTIVATION, 4)'];
+const SETTINGS = ['setActivationState'];
 
 async function open(folder) {
   const api = require(folder);
@@ -41,6 +43,7 @@ function description(opened, setup, driven) {
       'a torque is in world axes and acts during one step: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: ['https://github.com/kripken/ammo.js', 'https://github.com/bulletphysics/bullet3/blob/master/src/BulletDynamics/Dynamics/btRigidBody.cpp'],
   };
 }
@@ -59,7 +62,7 @@ class World {
     const pose = this.body.getWorldTransform();
     [this.frame, this.center] = [quaternion(pose.getRotation()), list(pose.getOrigin())];
     this.held = this.readBack();
-    if (this.strict) this.body.setActivationState(NEVER_ASLEEP);
+    if (mends(setup, 'setActivationState')) this.body.setActivationState(NEVER_ASLEEP);
     this.world.addRigidBody(this.body);
   }
 

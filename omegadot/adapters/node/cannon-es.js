@@ -1,9 +1,11 @@
 // cannon-es: a world of one body, whose shape is a point. There is no gyroscopic term.
 'use strict';
+const { mends } = require('./setups.js');
 
 const SWITCHED_OFF = [
   'linearDamping and angularDamping of 0.01: v is multiplied by (1 - d)^h at each step',
 ];
+const SETTINGS = ['linearDamping', 'angularDamping'];
 
 async function open(folder) {
   return require(folder);
@@ -28,6 +30,7 @@ function description(api, setup) {
       'a torque is in world axes and acts during one step: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: ['https://github.com/pmndrs/cannon-es', 'https://github.com/pmndrs/cannon-es/blob/master/src/objects/Body.ts'],
   };
 }
@@ -41,7 +44,7 @@ class World {
   constructor({ World: CannonWorld, Body, Particle, Vec3 }, setup, given, gravity) {
     const { mass, center_of_mass: center, inertia } = given;
     this.world = new CannonWorld({ gravity: new Vec3(...gravity) });
-    const damping = setup === 'physics' ? { linearDamping: 0, angularDamping: 0 } : {};
+    const damping = Object.fromEntries(SETTINGS.filter((name) => mends(setup, name)).map((name) => [name, 0]));
     this.body = new Body({ mass, ...damping });
     this.body.addShape(new Particle(), new Vec3(...center).negate()); // sets the inertia as well
     this.body.inertia.set(inertia[0], inertia[4], inertia[8]);

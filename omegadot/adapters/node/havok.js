@@ -4,6 +4,7 @@
 const fs = require('fs');
 const path = require('path');
 const { principal, rotated, turnedDiagonal } = require('./rotations.js');
+const { mends } = require('./setups.js');
 
 const FAST = 1e18; // its square is finite in single precision
 const SWITCHED_OFF = [
@@ -11,6 +12,10 @@ const SWITCHED_OFF = [
   'the limits of 200 m/s and 100 rad/s (HP_World_SetSpeedLimit)',
   'sleep (HP_Body_SetActivationControl)',
   'solver parameters that follow from the length of a step (HP_World_SetIdealStepTime)',
+];
+const SETTINGS = [
+  'HP_Body_SetLinearDamping', 'HP_Body_SetAngularDamping', 'HP_Body_SetActivationControl', 'HP_World_SetSpeedLimit',
+  'HP_World_SetIdealStepTime',
 ];
 
 async function open(folder) {
@@ -40,6 +45,7 @@ function description(api, setup) {
       'there are impulses only: a torque is an angular impulse h t in world axes at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: ['https://github.com/BabylonJS/havok', 'https://github.com/BabylonJS/havok/blob/main/packages/havok/HavokPhysics.d.ts'],
   };
 }
@@ -63,18 +69,21 @@ class World {
     checked(api.HP_Body_SetMotionType(this.body, api.MotionType.DYNAMIC));
     const perMass = moments.map((moment) => moment / given.mass);
     checked(api.HP_Body_SetMassProperties(this.body, [given.center_of_mass, given.mass, perMass, [x, y, z, w]]));
-    if (setup === 'physics') this.undisturbed();
+    this.mend(setup);
     checked(api.HP_World_AddBody(this.world, this.body, false));
     [this.center] = checked(api.HP_Body_GetMassProperties(this.body));
   }
 
-  undisturbed() {
+  mend(setup) {
     const { api, world, body } = this;
-    checked(api.HP_Body_SetLinearDamping(body, 0));
-    checked(api.HP_Body_SetAngularDamping(body, 0));
-    checked(api.HP_Body_SetActivationControl(body, api.ActivationControl.ALWAYS_ACTIVE));
-    checked(api.HP_World_SetSpeedLimit(world, FAST, FAST));
-    checked(api.HP_World_SetIdealStepTime(world, 0));
+    const mended = {
+      HP_Body_SetLinearDamping: [body, 0],
+      HP_Body_SetAngularDamping: [body, 0],
+      HP_Body_SetActivationControl: [body, api.ActivationControl.ALWAYS_ACTIVE],
+      HP_World_SetSpeedLimit: [world, FAST, FAST],
+      HP_World_SetIdealStepTime: [world, 0],
+    };
+    for (const name of SETTINGS) if (mends(setup, name)) checked(api[name](...mended[name]));
   }
 
   put({ q, w, p, v }) {

@@ -4,6 +4,7 @@
 const path = require('path');
 const { pathToFileURL } = require('url');
 const { principal, rotated, turnedDiagonal } = require('./rotations.js');
+const { mends } = require('./setups.js');
 
 const FAST = 1e18; // its square is finite in single precision
 const NEAR_ZERO = 1e-6; // kg m^2: MotionProperties::SetMassProperties takes no moments of less length
@@ -13,6 +14,10 @@ const SWITCHED_OFF = [
   'mMaxAngularVelocity of 47.1 rad/s and mMaxLinearVelocity of 500 m/s',
   'sleep (mAllowSleeping)',
   'the moments 0.4 m that stand in for moments below 1e-6 kg m^2 (MotionProperties.SetInverseInertia gives the right ones)',
+];
+const SETTINGS = [
+  'mApplyGyroscopicForce', 'mLinearDamping', 'mAngularDamping', 'mMaxLinearVelocity', 'mMaxAngularVelocity',
+  'mAllowSleeping', 'SetInverseInertia',
 ];
 
 async function open(folder) {
@@ -56,6 +61,7 @@ function description(api, setup) {
       'a torque is in world axes and acts during one step: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: [
       'https://github.com/jrouwe/JoltPhysics',
       'https://github.com/jrouwe/JoltPhysics.js',
@@ -84,12 +90,13 @@ function settingsOf({ api, scratch }, setup, given) {
   for (const row of [0, 1, 2]) inertia.SetColumn3(row, filled(scratch.one, given.inertia.slice(3 * row, 3 * row + 3)));
   made.mMassPropertiesOverride.mMass = given.mass;
   made.mMassPropertiesOverride.mInertia = inertia;
-  if (setup === 'physics') {
-    made.mApplyGyroscopicForce = true;
-    made.mLinearDamping = made.mAngularDamping = 0;
-    made.mMaxLinearVelocity = made.mMaxAngularVelocity = FAST;
-    made.mAllowSleeping = false;
-  }
+  const mended = {
+    mApplyGyroscopicForce: true,
+    mLinearDamping: 0, mAngularDamping: 0,
+    mMaxLinearVelocity: FAST, mMaxAngularVelocity: FAST,
+    mAllowSleeping: false,
+  };
+  for (const [name, value] of Object.entries(mended)) if (mends(setup, name)) made[name] = value;
   return made;
 }
 
@@ -102,7 +109,7 @@ class World {
     const settings = settingsOf(opened, setup, given);
     this.body = this.bodies.CreateBody(settings);
     this.api.destroy(settings);
-    if (setup === 'physics') this.keepSmallMoments(given.inertia);
+    if (mends(setup, 'SetInverseInertia')) this.keepSmallMoments(given.inertia);
     this.bodies.AddBody(this.body.GetID(), this.api.EActivation_Activate);
     this.center = list(this.body.GetShape().GetCenterOfMass());
   }

@@ -4,6 +4,7 @@ const fs = require('fs');
 const path = require('path');
 const { pathToFileURL } = require('url');
 const { principal, rotated, turnedDiagonal } = require('./rotations.js');
+const { mends } = require('./setups.js');
 
 const FAST = 1e18; // its square, which PhysX keeps, is finite in single precision
 const GYROSCOPIC = 1 << 10; // PxRigidBodyFlag::eENABLE_GYROSCOPIC_FORCES, which the binding does not name
@@ -13,6 +14,7 @@ const SWITCHED_OFF = [
   'maxAngularVelocity of 100 rad/s',
   'sleep (setSleepThreshold)',
 ];
+const SETTINGS = ['eENABLE_GYROSCOPIC_FORCES', 'angularDamping', 'maxAngularVelocity', 'sleepThreshold'];
 
 async function open(folder) {
   const file = path.join(folder, 'physx-js-webidl.mjs');
@@ -72,6 +74,7 @@ function description(opened, setup, driven) {
       'a torque is in world axes and acts during one step: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: [
       'https://github.com/fabmax/physx-js-webidl',
       'https://github.com/NVIDIA-Omniverse/PhysX',
@@ -92,13 +95,11 @@ class World {
     this.body.setCMassLocalPose(this.pose(frame, given.center_of_mass));
     this.body.setMass(given.mass);
     this.body.setMassSpaceInertiaTensor(this.vector(moments));
-    if (setup === 'physics') {
-      this.body.setRigidBodyFlag(GYROSCOPIC, true);
-      this.body.setLinearDamping(0);
-      this.body.setAngularDamping(0);
-      this.body.setMaxAngularVelocity(FAST);
-      this.body.setSleepThreshold(0);
-    }
+    if (mends(setup, 'eENABLE_GYROSCOPIC_FORCES')) this.body.setRigidBodyFlag(GYROSCOPIC, true);
+    if (setup === 'physics') this.body.setLinearDamping(0); // as it is by default
+    if (mends(setup, 'angularDamping')) this.body.setAngularDamping(0);
+    if (mends(setup, 'maxAngularVelocity')) this.body.setMaxAngularVelocity(FAST);
+    if (mends(setup, 'sleepThreshold')) this.body.setSleepThreshold(0);
     this.scene.addActor(this.body);
     this.center = list(this.body.getCMassLocalPose().p);
   }

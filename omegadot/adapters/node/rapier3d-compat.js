@@ -2,6 +2,7 @@
 'use strict';
 const { Unsupported } = require('./channel.js');
 const { principal, rotated, turnedDiagonal } = require('./rotations.js');
+const { mends } = require('./setups.js');
 
 // The limit of linear velocity is 400 m/s in this unit. It scales tolerances of contacts besides.
 const UNIT = 1e12;
@@ -10,6 +11,7 @@ const SWITCHED_OFF = [
   'sleep (RigidBodyDesc.setCanSleep)',
   'the limit of 400 m/s (IntegrationParameters.lengthUnit raises it)',
 ];
+const SETTINGS = ['setCanSleep', 'lengthUnit'];
 
 async function open(folder) {
   const api = require(folder);
@@ -37,6 +39,7 @@ function description(api, setup) {
       'a torque is in world axes and acts until it is reset: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
+    settings: SETTINGS,
     links: ['https://github.com/dimforge/rapier', 'https://rapier.rs/docs/user_guides/javascript/rigid_bodies'],
   };
 }
@@ -53,10 +56,8 @@ class World {
     const given = [body.mass, vector(body.center_of_mass), vector(moments), quaternion(frame)];
     const made = RigidBodyDesc.dynamic().setAdditionalMassProperties(...given);
     this.strict = setup === 'physics';
-    if (this.strict) {
-      made.setCanSleep(false);
-      this.world.integrationParameters.lengthUnit = UNIT;
-    }
+    if (mends(setup, 'setCanSleep')) made.setCanSleep(false);
+    if (mends(setup, 'lengthUnit')) this.world.integrationParameters.lengthUnit = UNIT;
     this.body = this.world.createRigidBody(made);
     this.body.recomputeMassPropertiesFromColliders(); // they are zero before the first step
     this.center = list(this.body.localCom());

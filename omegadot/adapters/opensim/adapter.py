@@ -21,6 +21,7 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
+    mends,
 )
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array, State, System
@@ -41,6 +42,7 @@ SWITCHED_OFF = (
     "joint's frame is then turned by 90 degrees about z, from one step, or sample, to the next",
     "the accuracy of 1e-3 to which Verlet's fixed steps solve their equation: 1e-12",
 )
+SETTINGS = ("orientationInParent", "setIntegratorAccuracy")
 LINKS = (
     "https://opensim.stanford.edu/",
     "https://github.com/opensim-org/opensim-core",
@@ -58,7 +60,7 @@ class OpenSimAdapter(OneJointAdapter):
         engine.Logger.setLevelString("Off")
         self._engine = engine
         self._setup = setup
-        self._charts = (WORLD, TURNED) if setup == "physics" else (WORLD,)
+        self._charts = (WORLD, TURNED) if mends(setup, "orientationInParent") else (WORLD,)
 
     @property
     def description(self) -> Description:
@@ -69,6 +71,7 @@ class OpenSimAdapter(OneJointAdapter):
             integrators=declared_integrators(self._setup == "physics"),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=ONE_BODY,
             licence="Apache-2.0",
             links=LINKS,
@@ -113,7 +116,7 @@ class OpenSimAdapter(OneJointAdapter):
             return Trajectory(times, _states(joint.system, charts, rows), seconds)
 
     def _solves(self, plan: Plan) -> float | None:
-        return plan.solves if plan.solves and self._setup == "physics" else None
+        return plan.solves if plan.solves and mends(self._setup, "setIntegratorAccuracy") else None
 
 
 def _states(system: System, charts: list[Chart], rows: Array) -> State:

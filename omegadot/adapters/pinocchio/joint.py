@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from omegadot.adapters.body_files import origin_at_pivot
+from omegadot.adapters.joint_torque import joint_torque
 from omegadot.adapters.pinocchio.model import JOINT
-from omegadot.adapters.pinocchio.motion import joint_motion, joint_torque
+from omegadot.adapters.pinocchio.motion import joint_motion
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
@@ -35,7 +36,7 @@ class PinocchioJoint:
         self._model.gravity.linear = np.array(load.gravity, float)
         self._data = self._model.createData()
         self._joint_M_com = self._pin.SE3(np.eye(3), lever)
-        self._torque = joint_torque(load, self._model.nv)
+        self._torque = joint_torque(load, self._model.nv, scalar_last=True)
         self.motion = joint_motion(engine, self._model, load)
         self._q, self._v = self._pin.neutral(self._model), np.zeros(self._model.nv)
 

@@ -7,45 +7,21 @@ angular) in body axes; a spherical joint's are (x, y, z, w) and omega.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.joint_torque import joint_torque
 from omegadot.reference_impl.arithmetic.components import rotated
 from omegadot.reference_impl.one_body.body_configurations import ATTITUDE, SPATIAL
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array, Load
 
-Torque = Callable[[Array, Array], Array]
-
-
-def joint_torque(load: Load, count: int) -> Array | Torque:
-    """The applied torques and the damping as a torque (n,) of the joint: constant, or of q and v.
-
-    A couple has no linear part.
-    """
-    constant, drag = np.zeros(count), np.zeros(count)
-    constant[-3:], drag[-3:] = load.torque_body, -load.damping
-    world = [float(x) for x in load.torque_world]
-    if not any(world):
-        if not drag.any():
-            return constant
-        return (lambda _, v: constant + drag * v) if constant.any() else lambda _, v: drag * v
-
-    def in_world(q: Array, _: Array) -> Array:
-        *_, x, y, z, w = q.tolist()
-        couple = constant.copy()
-        couple[-3:] += rotated((-w, x, y, z), world)
-        return couple
-
-    return (lambda q, v: in_world(q, v) + drag * v) if drag.any() else in_world
-
 
 def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
     """The joint's motion under its loads."""
-    data, torque = model.createData(), joint_torque(load, model.nv)
+    data, torque = model.createData(), joint_torque(load, model.nv, scalar_last=True)
     parts = {**(SPATIAL if load.pivot is None else ATTITUDE), "turned_by": None}
     parts["retract"] = partial(pin.integrate, model)
     parts["normalize"] = partial(pin.normalize, model)

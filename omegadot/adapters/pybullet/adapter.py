@@ -19,7 +19,7 @@ from omegadot.adapters.protocol import (
 )
 from omegadot.adapters.pybullet.integrators import KINDS, Kind, declared_integrators
 from omegadot.adapters.pybullet.joint import PyBulletJoint
-from omegadot.adapters.pybullet.model import SWITCHED_OFF, PyBulletModel
+from omegadot.adapters.pybullet.model import SETTINGS, SWITCHED_OFF, PyBulletModel
 from omegadot.adapters.pybullet.stepping import is_finite, run
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, State, System
@@ -70,6 +70,7 @@ class PyBulletAdapter(OneJointAdapter):
             integrators=declared_integrators(self._system),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=FEATURES,
             licence="Zlib",
             links=LINKS,

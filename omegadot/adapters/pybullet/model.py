@@ -13,7 +13,7 @@ import numpy as np
 
 from omegadot.adapters.body_files import origin_at_pivot
 from omegadot.adapters.mujoco.model import principal_frame
-from omegadot.adapters.protocol import Setup, UnsupportedError
+from omegadot.adapters.protocol import Setup, UnsupportedError, mends
 from omegadot.adapters.pybullet.integrators import Kind
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, Load, System
@@ -32,6 +32,7 @@ SWITCHED_OFF = (
     "begins: a step at rest is taken first",
     "the cut of a turn to 45 degrees in a step: the adapter refuses to go on there",
 )
+SETTINGS = ("linearDamping", "angularDamping", "maxJointVelocity")
 
 
 class PyBulletModel:
@@ -61,8 +62,7 @@ class PyBulletModel:
             jointDamping=float(system.load.damping),
             physicsClientId=client,
         )
-        if self.strict:
-            self._without_damping()
+        self._mend(setup)
 
     def _base(self) -> int:
         made: int = self._engine.createMultiBody(
@@ -91,18 +91,14 @@ class PyBulletModel:
         )
         return made
 
-    def _without_damping(self) -> None:
+    def _mend(self, setup: Setup) -> None:
         engine, client = self._engine, self.client
-        engine.changeDynamics(
-            self.body,
-            BASE,
-            linearDamping=0.0,
-            angularDamping=0.0,
-            maxJointVelocity=FASTEST,
-            activationState=engine.ACTIVATION_STATE_DISABLE_SLEEPING,
-            physicsClientId=client,
-        )
-        if not self.free:
+        values = dict(zip(SETTINGS, (0.0, 0.0, FASTEST), strict=True))
+        mended = {name: value for name, value in values.items() if mends(setup, name)}
+        if self.strict:
+            mended["activationState"] = engine.ACTIVATION_STATE_DISABLE_SLEEPING
+        engine.changeDynamics(self.body, BASE, **mended, physicsClientId=client)
+        if self.strict and not self.free:
             engine.setJointMotorControlMultiDof(
                 self.body,
                 self.link,

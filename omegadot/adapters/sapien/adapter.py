@@ -17,7 +17,7 @@ from omegadot.adapters.protocol import (
     UnsupportedError,
 )
 from omegadot.adapters.sapien.integrators import STEP, declared_integrators
-from omegadot.adapters.sapien.model import SWITCHED_OFF, SapienModel
+from omegadot.adapters.sapien.model import SETTINGS, SWITCHED_OFF, SapienModel
 from omegadot.adapters.sapien.stepping import run
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -60,6 +60,7 @@ class SapienAdapter(OneJointAdapter):
             precision="float32",
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            settings=SETTINGS,
             features=FEATURES,
             licence="Apache-2.0 AND BSD-3-Clause",  # of SAPIEN, and of PhysX in it
             links=LINKS,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.adapters.mujoco.model import principal_frame
-from omegadot.adapters.protocol import Setup, UnsupportedError
+from omegadot.adapters.protocol import Setup, UnsupportedError, mends
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse, rotation_matrix
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
@@ -21,6 +21,7 @@ SWITCHED_OFF = (
     "sleep (set_sleep_threshold, 0.005 J/kg)",
     "max_angular_velocity of 100 rad/s",
 )
+SETTINGS = ("angular_damping", "sleep_threshold", "max_angular_velocity")
 FAST = 1e18  # rad/s; its square, which PhysX keeps, is finite in single precision
 PLACE, ATTITUDE, VELOCITY, SPIN = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 
@@ -47,9 +48,9 @@ class SapienModel:
         self.actor.set_cmass_local_pose(engine.Pose(system.body.center_of_mass, frame))
         if self.strict:
             self.actor.set_linear_damping(0.0)
-            self.actor.set_angular_damping(0.0)
-            self.actor.set_sleep_threshold(0.0)
-            self.actor.set_max_angular_velocity(FAST)
+        for name, value in zip(SETTINGS, (0.0, 0.0, FAST), strict=True):
+            if mends(setup, name):
+                getattr(self.actor, f"set_{name}")(value)
         self.entity.add_component(self.actor)
         self._scene.add_entity(self.entity)
         self._center = np.array(self.actor.get_cmass_local_pose().p, float)

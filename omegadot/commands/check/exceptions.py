@@ -16,15 +16,16 @@ from typing import Any
 from omegadot.adapters.registry import OURS
 from omegadot.commands.check.baseline_file import Baseline
 from omegadot.commands.check.compare import baseline_checks
+from omegadot.commands.check.exception_conditions import Condition, all_hold, read_conditions
 from omegadot.commands.check.result import Check, Result, Subject, checks_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
 from omegadot.harness.engine_target import file_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
-from omegadot.scenarios import ScenarioError, builtin_names, load_builtin
+from omegadot.scenarios import Scenario, ScenarioError, builtin_names, load_builtin
 from omegadot.scenarios.files import read_toml
-from omegadot.scenarios.random_systems import random_scenario
+from omegadot.scenarios.random_systems import NAME, random_scenario
 
 OWN_FOLDER = Path(__file__).with_name("known")
 SUFFIX = ".exceptions.toml"
@@ -33,17 +34,28 @@ KEYS = ("check", "reason", "link")
 
 @dataclass(frozen=True)
 class DeclaredException:
-    """A known failure. check: a pattern of check ids, with * for any characters."""
+    """A known failure.
+
+    check: a pattern of check ids, with * for any characters.
+    when: limits of the body and its motion; it is about those scenarios alone of which all hold.
+    """
 
     engine: str
     check: str
     reason: str
     link: str
     source: str
+    when: tuple[Condition, ...] = ()
 
-    def matches(self, check: Check) -> bool:
-        """Whether it refers to this check."""
-        return check.engine == self.engine and fnmatchcase(check.id, self.check)
+    def matches(self, check: Check, scenario: Scenario | None = None) -> bool:
+        """Whether it refers to this check, of this scenario; without one, whether it may."""
+        if check.engine != self.engine or not fnmatchcase(check.id, self.check):
+            return False
+        return scenario is None or all_hold(self.when, scenario)
+
+    def may_pass(self, check: Check) -> bool:
+        """Whether a check that it matches may hold: of all random systems, none is named."""
+        return NAME.fullmatch(check.scenario) is not None and check.scenario not in self.check
 
 
 def _refuse_unknown(table: dict[str, Any], known: Sequence[str], where: str) -> None:
@@ -55,6 +67,7 @@ def _refuse_unknown(table: dict[str, Any], known: Sequence[str], where: str) -> 
 def read_exceptions(path: Path) -> list[DeclaredException]:
     """The exceptions of one file: ``engine``, and ``[[exception]]`` with check, reason and link.
 
+    An exception may have a table ``when``, see `omegadot.commands.check.exception_conditions`.
     Raises UsageError.
     """
     try:
@@ -68,11 +81,12 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
     found = []
     for number, entry in enumerate(entries, 1):
         where = f"{path}: exception {number}"
-        _refuse_unknown(entry, KEYS, where)
+        _refuse_unknown(entry, (*KEYS, "when"), where)
         for key in KEYS:
             if not isinstance(entry.get(key), str) or not entry[key].strip():
                 raise UsageError(f"{where}: {key} is missing or empty; give it as a string.")
-        found.append(DeclaredException(engine, **entry, source=str(path)))
+        when = read_conditions(entry["when"], where) if "when" in entry else ()
+        found.append(DeclaredException(engine, **{**entry, "source": str(path), "when": when}))
     return found
 
 
@@ -120,19 +134,22 @@ def matches_nothing(exception: DeclaredException) -> str:
 
 
 def with_exceptions(
-    check: Check, result: Result, exceptions: Iterable[DeclaredException], drawn: bool = False
+    check: Check,
+    result: Result,
+    exceptions: Iterable[DeclaredException],
+    scenario: Scenario | None = None,
 ) -> Result:
     """A failure that is declared becomes "declared"; a pass that is declared to fail fails.
 
-    drawn: of a random system that was not named. It may pass: no exception is about it.
+    scenario: that of the check, which an exception's limits are about.
     """
-    exception = next((e for e in exceptions if e.matches(check)), None)
+    exception = next((e for e in exceptions if e.matches(check, scenario)), None)
     if exception is None:
         return result
     if result.verdict == "fail":
         text = f"{exception.reason} ({exception.link}): {result.settled.message}"
         return Result("declared", text, result.outcome)
-    if result.verdict == "pass" and not drawn:
+    if result.verdict == "pass" and not exception.may_pass(check):
         return Result("fail", no_longer_fails(exception))
     return result
 

@@ -154,8 +154,13 @@ class Suite:
             return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
-        drawn = check.scenario in self.selection.drawn
-        return with_exceptions(check, self._results[check], self.selection.exceptions, drawn)
+        return self._excused(check)
+
+    def _excused(self, check: Check) -> Result:
+        """The result of a scenario's check, with the exceptions that are declared."""
+        case = next(c for c in self.selection.cases if c.name == check.scenario)
+        known = self.selection.exceptions
+        return with_exceptions(check, self._results[check], known, case.scenario)
 
     def _run(self, case: Case) -> None:
         """Run one scenario on every engine; keep its checks' results, not the trajectories."""
@@ -197,6 +202,5 @@ class Suite:
         for gate in (*GATES_OF_A_SCENARIO, *GATES_OF_A_RUN):
             own = replace(check, gate=gate)
             if own in self._results:
-                result = with_exceptions(own, self._results[own], self.selection.exceptions, False)
-                found += [gate] if result.verdict == "fail" else []
+                found += [gate] if self._excused(own).verdict == "fail" else []
         return found

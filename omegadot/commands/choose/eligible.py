@@ -27,6 +27,7 @@ PACKAGES = {
     "mjx-float32": "mujoco-mjx",
     "jaxsim": "jaxsim",
     "jaxsim-float32": "jaxsim",
+    "idyntree": "idyntree",
 }
 # More than any minor version of Python has had.
 MOST_RELEASES = 40

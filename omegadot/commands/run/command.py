@@ -48,11 +48,12 @@ def run(
         "omegadot-run"
     ),
     setup: Annotated[
-        options.Setup,
+        options.Setups,
         typer.Option(
-            help="physics: defaults that disturb the motion are off; as-shipped: all defaults."
+            help="physics: defaults that disturb the motion are off; as-shipped: all defaults; "
+            "both: each engine in both, and which single setting mends most."
         ),
-    ] = options.Setup.physics,
+    ] = options.Setups.physics,
     via: options.Ways = None,
     adapters: options.Adapters = None,
     exceptions: options.Exceptions = None,

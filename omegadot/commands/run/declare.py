@@ -16,6 +16,7 @@ from omegadot.commands.check.result import Check, subject_of
 from omegadot.gates.case import Case, knobs_of
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.outcome import EngineCase, Outcome
+from omegadot.scenarios import Scenario
 
 Stale = list[dict[str, Any]]
 
@@ -27,6 +28,11 @@ def _declared(row: Row, exception: DeclaredException) -> Row:
     return replace(row, verdict="declared", note=f"{note}; {row.note}" if row.note else note)
 
 
+def _entry(exception: DeclaredException) -> dict[str, Any]:
+    """An exception as the record holds it."""
+    return {**vars(exception), "when": {c.key: c.limit for c in exception.when}}
+
+
 class _Ledger:
     """Exceptions as they are used up: which hold, and which refer to a check that passes."""
 
@@ -34,14 +40,15 @@ class _Ledger:
         self.exceptions = list(exceptions)
         self.passing: dict[DeclaredException, list[str]] = {}
 
-    def rows(self, whole: Check, rows: Sequence[Row]) -> list[Row]:
+    def rows(self, whole: Check, scenario: Scenario, rows: Sequence[Row]) -> list[Row]:
         """The rows of all gates, failures declared where an exception refers to their check."""
         found: list[Row] = []
         for gate in dict.fromkeys(row.gate for row in rows):
             own, check = [row for row in rows if row.gate == gate], replace(whole, gate=gate)
-            exception = next((e for e in self.exceptions if e.matches(check)), None)
+            exception = next((e for e in self.exceptions if e.matches(check, scenario)), None)
             if exception is not None:
-                if worst(row.verdict for row in own) == "pass":
+                holds = worst(row.verdict for row in own) == "pass"
+                if holds and not exception.may_pass(check):
                     self.passing.setdefault(exception, []).append(check.id)
                 own = [_declared(row, exception) for row in own]
             found += own
@@ -52,8 +59,8 @@ class _Ledger:
         whole, runs = Check(found.engine.name, case.name, ""), []
         for run in found.runs:
             check = Check(whole.engine, case.name, "", run.integrator.name, **knobs_of(run.sweep))
-            runs.append(replace(run, rows=self.rows(check, run.rows)))
-        return replace(found, shared=self.rows(whole, found.shared), runs=runs)
+            runs.append(replace(run, rows=self.rows(check, case.scenario, run.rows)))
+        return replace(found, shared=self.rows(whole, case.scenario, found.shared), runs=runs)
 
 
 def with_declared(
@@ -71,12 +78,12 @@ def with_declared(
         for judged in outcome.cases
     ]
     stale = [
-        {**vars(e), "checks": ids, "problem": f"{ids[0]} {no_longer_fails(e)}"}
+        {**_entry(e), "checks": ids, "problem": f"{ids[0]} {no_longer_fails(e)}"}
         for e, ids in ledger.passing.items()
     ]
     for engine in outcome.engines:
         stale += [
-            {**vars(e), "checks": [], "problem": matches_nothing(e)}
+            {**_entry(e), "checks": [], "problem": matches_nothing(e)}
             for e in unmatched(exceptions, subject_of(engine), cases)
         ]
     return replace(outcome, cases=judged), stale

@@ -64,7 +64,7 @@ class Across:
         self._at_states.add(scene)
         self._left_over.add(scene)
         if INVERSE in scene.evidence:
-            self._inverse.add(scene.name, scene.evidence[INVERSE])
+            self._inverse.add(scene.name, scene.evidence[INVERSE], scene.features)
         self._carried, self._mistyped = Carried(self._all), Mistyped(self._all)
         self._named, self._known, self._rules = {}, {}, {}
         self._read = None

@@ -32,6 +32,8 @@ class Form:
     Of the centre of mass
     ``a = g - k v + s ω × v + R (g_b + ω̇ × l + ω × (ω × l) + A τ_applied × e)``, with gravity g and
     gravity_body g_b (..., 3), drag k and spatial s (...), offset l and couple_offset e (..., 3) m.
+    With fall c (...) 1/m, gravity is ``g / (1 + c z)^2``, z the height of the centre of mass above
+    the world's origin, against g.
     """
 
     solve: Array
@@ -46,6 +48,7 @@ class Form:
     arm: Array
     gravity: Array
     gravity_body: Array
+    fall: Array
     drag: Array
     spatial: Array
     offset: Array
@@ -85,6 +88,7 @@ def form_of(system: System) -> Form:
         arm=arm,
         gravity=_NONE if pivoted else np.asarray(load.gravity, dtype=float),
         gravity_body=_NONE,
+        fall=_NOTHING,
         drag=_NOTHING,
         spatial=_NOTHING,
         offset=arm,
@@ -138,11 +142,20 @@ def accelerations(form: Form, states: State) -> Acceleration:
         # R (R^T v) stands for v itself: the spatial term is ω × v with ω in the world
         lever = lever + form.spatial[..., None] * cross(w, into_body(v))
     linear = form.gravity - form.drag[..., None] * v
+    if form.fall.any():
+        linear = linear + form.gravity * _less_with_height(form, states.position)[..., None]
     if lever is not form.gravity_body or lever.any():
         linear = linear + apply(turn, lever)
     if linear.shape != angular.shape:
         linear = np.broadcast_to(linear, angular.shape)
     return Acceleration(angular, linear)
+
+
+def _less_with_height(form: Form, place: Array) -> Array:
+    """How much of gravity is added at a place (n, 3): (n,), and (lanes, n) of stacked forms."""
+    size = np.sqrt(np.sum(form.gravity * form.gravity, axis=-1))
+    height = -np.sum(place * form.gravity, axis=-1) / np.where(size > 0.0, size, 1.0)
+    return np.asarray((1.0 + form.fall * height) ** -2.0 - 1.0)
 
 
 def changed(form: Form, **parts: Array) -> Form:

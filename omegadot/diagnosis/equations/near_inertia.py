@@ -11,7 +11,12 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.inertia_places import PLACES, Place
 from omegadot.diagnosis.equations.wrong_inverse import is_of_torque
-from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, NearRule
+from omegadot.diagnosis.models.near_numbers import (
+    LAST_RULES,
+    NEAR_RULES,
+    SMALL_RULES,
+    NearRule,
+)
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
@@ -36,15 +41,16 @@ def near_inertia(every: Sequence[Evidence]) -> str:
     wrong = [e for e in used if e.clear]
     if not wrong:
         return ""
-    found = list(_fits(used, wrong[0]))
+    found = list(_fits(used, wrong[0], (*NEAR_RULES, *SMALL_RULES)))
+    found = found or list(_fits(used, wrong[0], LAST_RULES))
     if len({fit.place.text for fit in found}) != 1:
         return ""
     return _text(found) if len({fit.rule in SMALL_RULES for fit in found}) == 1 else ""
 
 
-def _fits(every: Sequence[Evidence], first: Evidence) -> Iterator[_Fit]:
+def _fits(every: Sequence[Evidence], first: Evidence, rules: Sequence[NearRule]) -> Iterator[_Fit]:
     for place in PLACES:
-        for rule in (*NEAR_RULES, *SMALL_RULES):
+        for rule in rules:
             if not _fitting(first, place, rule, _between(_own(first, place, rule))).any():
                 continue
             known = np.unique(np.concatenate([_own(e, place, rule) for e in every]))

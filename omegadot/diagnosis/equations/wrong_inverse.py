@@ -11,7 +11,9 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.equations.hypotheses.unsymmetric import of_whole
-from omegadot.diagnosis.equations.wrong_torque import fitting_torques, plainest
+from omegadot.diagnosis.equations.wrong_torque import fitting_torques, plainest, would_show
+from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -21,18 +23,21 @@ from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, System
 
+MOST_CONDITIONS = 2
+
 
 class WrongInverse:
     """The evidence of inverse dynamics so far, by scenario, and what fits each."""
 
     def __init__(self) -> None:
         self._evidence: dict[str, Evidence] = {}
+        self._features: dict[str, Features] = {}
         self._fits: dict[str, list[str]] = {}
         self._forms: list[str] | None = None
 
-    def add(self, name: str, evidence: Evidence) -> None:
+    def add(self, name: str, evidence: Evidence, features: Features) -> None:
         """Of one more scenario."""
-        self._evidence[name], self._forms = evidence, None
+        self._evidence[name], self._features[name], self._forms = evidence, features, None
 
     def causes(self, name: str) -> list[str]:
         """What explains this scenario and every other that fails; what fits this one, else.
@@ -48,7 +53,30 @@ class WrongInverse:
                     self._forms = _forms([one for one in self._evidence.values() if one.finite])
             common = self._forms
         found = plainest(common or own)
+        against = {text: self._against(text) for text in found}
+        # what no sound scenario is against comes first
+        found = [text for text in found if not against[text]] or [
+            text + self._where(text, against[text]) for text in found
+        ]
         return either(found) if len(found) <= MOST_NAMED else []
+
+    def _against(self, text: str) -> list[str]:
+        """The scenarios that are right, and would show it."""
+        sound = [(name, one) for name, one in self._evidence.items() if np.all(one.sound)]
+        return [
+            name
+            for name, one in sound
+            if would_show(text, one.system, one.states, one.true, one.eps)
+        ]
+
+    def _where(self, text: str, against: Sequence[str]) -> str:
+        """On which scenarios alone it is so, if that is known."""
+        shown = [self._features[name] for name in self._evidence if text in self._of(name)]
+        common = in_common(shown, [self._features[name] for name in against])
+        if 0 < len(common) <= MOST_CONDITIONS:
+            return only_where(text, " or where ".join(common))
+        others = "other" if len(against) == 1 else "others"
+        return f", not on {len(against)} {others} that would show it"
 
     def _of(self, name: str) -> list[str]:
         if name not in self._fits:
@@ -80,7 +108,8 @@ def _forms(every: Sequence[Evidence]) -> list[str]:
             return []
     kept = left or []
     alike = {of_whole(text) for text in kept if of_whole(text) != text}  # on free bodies alone
-    return [f"in inverse dynamics, {text}" for text in kept if text not in alike]
+    plain = [text.removeprefix("in the dynamics, ") for text in kept if text not in alike]
+    return [f"in inverse dynamics, {text}" for text in plain]
 
 
 def _wrong_forms(system: System) -> Mapping[str, Form]:

@@ -18,6 +18,7 @@ from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+SHOWN = 1e6  # of rounding: a term that is so large shows, were it off by the least that is named
 WHOLE = 1e-9  # a share that is a whole number but for rounding
 APPLIED = "the applied torque"
 PARTS = ("the torque in body axes", "the torque in world axes")
@@ -54,20 +55,7 @@ def fitting_torques(
     if np.all(norm(torque - true) <= BEYOND_ROUNDING * bound):
         return []
     inertia = moving_inertia(system)
-    terms: dict[str, Array] = {
-        "the gyroscopic term": cross(w, apply(inertia, w)),
-        "gravity": -gravity_torque(system, states),
-        "the inertia times omega-dot": apply(inertia, requested.angular),
-    }
-    loads: dict[str, Array] = {
-        "damping": damping_torque(system, states),
-        APPLIED: applied_torque(system, states),
-    }
-    of_frames = (
-        system.load.torque_body,
-        rotate_inverse(states.orientation, system.load.torque_world),
-    )
-    parts = {what: 0.0 * w + torque for what, torque in zip(PARTS, of_frames, strict=True)}
+    terms, loads, parts = _terms(system, states, requested)
 
     def fits(candidate: Array, times: float = 1.0) -> bool:
         return bool(np.all(norm(torque - candidate) <= SLACK * max(1.0, abs(times)) * bound))
@@ -108,6 +96,41 @@ def fitting_torques(
             if k is not None and fits(true + k * alone):
                 found.append(_worded(f"the {'xyz'[axis]} component of {what}", 1.0 + k))
     return found
+
+
+def would_show(
+    text: str, system: System, states: State, requested: Acceleration, eps: float = EPS
+) -> bool:
+    """Whether a cause in one term, found on another system, makes a torque of this one another."""
+    bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, requested)
+    named = [
+        term
+        for known in _terms(system, states, requested)
+        for what, term in known.items()
+        if what in text
+    ]
+    return any(bool(np.any(norm(term) > SHOWN * bound)) for term in named)
+
+
+def _terms(
+    system: System, states: State, requested: Acceleration
+) -> tuple[dict[str, Array], dict[str, Array], dict[str, Array]]:
+    """By name, (n, 3): the terms of the torque, the loads that act, and parts of these."""
+    w, inertia = states.angular_velocity, moving_inertia(system)
+    terms: dict[str, Array] = {
+        "the gyroscopic term": cross(w, apply(inertia, w)),
+        "gravity": -gravity_torque(system, states),
+        "the inertia times omega-dot": apply(inertia, requested.angular),
+    }
+    loads: dict[str, Array] = {
+        "damping": damping_torque(system, states),
+        APPLIED: applied_torque(system, states),
+    }
+    of_frames = (
+        system.load.torque_body,
+        rotate_inverse(states.orientation, system.load.torque_world),
+    )
+    return terms, loads, {what: 0.0 * w + one for what, one in zip(PARTS, of_frames, strict=True)}
 
 
 def _share(rest: Array, term: Array, bound: Array) -> float | None:

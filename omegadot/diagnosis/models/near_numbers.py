@@ -81,6 +81,42 @@ def _principal_rule(text: str, way: Callable[[float, float], float]) -> NearRule
     return NearRule("principal moments", f"taken as equal: {text}", ratios, tensor)
 
 
+def _sphere_rule() -> NearRule:
+    """All three moments at once, in whatever axes."""
+
+    def ratios(requested: Array) -> Array:
+        moments = np.linalg.eigvalsh(requested)
+        return np.array([_ratio(moments[0], moments[2])])
+
+    def tensor(requested: Array, limit: float) -> Array:
+        near = bool(ratios(requested)[0] < limit)
+        return np.trace(requested) / 3.0 * np.eye(3) if near else requested
+
+    done = "taken as equal: all three are a third of the trace"
+    return NearRule("principal moments", done, ratios, tensor)
+
+
+def _top_rule() -> NearRule:
+    """As `_sphere_rule`, and two that are near where the outermost are not."""
+
+    def ratios(requested: Array) -> Array:
+        moments = np.linalg.eigvalsh(requested)
+        return np.array([_ratio(moments[i], moments[j]) for i, j in PAIRS])
+
+    def tensor(requested: Array, limit: float) -> Array:
+        moments, axes = np.linalg.eigh(requested)
+        near = [pair for pair in (PAIRS[2], *PAIRS[:2]) if _ratio(*moments[list(pair)]) < limit]
+        if not near:
+            return requested
+        alike = [0, 1, 2] if near[0] == PAIRS[2] else list(near[0])
+        more = np.zeros(3)
+        more[alike] = np.mean(moments[alike]) - moments[alike]
+        return np.asarray(requested + (axes * more) @ axes.T)
+
+    done = "taken as equal: two are their mean, and all three where the outermost are so near"
+    return NearRule("principal moments", done, ratios, tensor)
+
+
 SIZES: dict[str, Callable[[Array], float]] = {
     "the largest number on its diagonal": lambda t: float(np.max(np.abs(np.diag(t)))),
     "its trace": lambda t: abs(float(np.trace(t))),
@@ -113,5 +149,9 @@ def _small_rules() -> Iterator[NearRule]:
 NEAR_RULES = (
     *(_diagonal_rule(*way) for way in WAYS.values()),
     *(_principal_rule(*WAYS[name]) for name in ("mean", "larger", "smaller")),
+    _sphere_rule(),
 )
 SMALL_RULES = tuple(_small_rules())
+LAST_RULES = (
+    _top_rule(),
+)  # which differ from these on near spheres alone: where none of them fits

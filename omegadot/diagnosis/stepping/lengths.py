@@ -54,8 +54,11 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
         bare = all(run.timestep < LONGEST_OF_RATE for run in failing)
         return [made[0].removesuffix(ONE_AT_LEAST) if bare else made[0]]
     taken, missed = list[_Taken](), 0
-    for count, run in enumerate(failing):
+    for count, run in enumerate(sorted(failing, key=lambda run: run.timestep)):
         one = _taken(run.short, by)
+        if one is None and taken:  # where steps have a longest length, most are far from it
+            before = taken[-1].timestep * (1.0 + taken[-1].part)
+            one = _taken(run.short, by, before / run.timestep - 1.0)
         missed += one is None
         if missed > MOST_MISSED + MISSED * count:
             return []
@@ -134,7 +137,7 @@ def _whole_rates(steps: Array, parts: Array) -> bool:
     return bool(np.all(np.abs(parts - due) <= OTHER))
 
 
-def _taken(run: KeptRun, by: SchemeOf) -> _Taken | None:
+def _taken(run: KeptRun, by: SchemeOf, start: float = 0.0) -> _Taken | None:
     """By which part the steps of a run are too long, by Gauss-Newton; None where none makes it.
 
     It is known as well as the place at which most depends on it shows it.
@@ -145,7 +148,7 @@ def _taken(run: KeptRun, by: SchemeOf) -> _Taken | None:
         found = run.apart(taken.ends(by))
         return np.stack([found[c] / run.bounds[c][:, None] for c in CHANNELS if _known(run, c)])
 
-    found, before = 0.0, np.inf
+    found, before = start, np.inf
     for _ in range(MOST_TRIES):
         here = apart(found)
         left = float(np.max(norm(here)))

@@ -24,6 +24,7 @@ from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
 from omegadot.diagnosis.stepping.slips.first_step import first_step_causes
+from omegadot.diagnosis.stepping.slips.implicit_gyroscopic import implicit_gyroscopic
 from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.slips.old_operands import SOLVED, old_operands
@@ -90,6 +91,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
                 lambda: multistep_slips(integrator, runs),
                 lambda: commutator_slips(integrator, runs),
                 lambda: jacobian_slips(integrator, runs),
+                lambda: implicit_gyroscopic(integrator, runs),
                 lambda: short_turns(runs),
             )
         )

@@ -41,6 +41,11 @@ def _states(samples: pl.DataFrame, suffix: str) -> tuple[State, Array]:
     return State(q, w, p, v), a
 
 
+def states_of(samples: pl.DataFrame, suffix: str = "") -> State:
+    """The states (n,) of samples with the columns STATE, each with the suffix."""
+    return _states(samples, suffix)[0]
+
+
 def _norm(vectors: Array) -> Array:
     return np.asarray(np.sqrt(np.sum(vectors * vectors, axis=-1)))
 

@@ -22,6 +22,8 @@ from omegadot.reports.page.templating import asset, environment, script
 from omegadot.reports.page.view_3d.view import view_section
 from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
+from omegadot.reports.shipped import table as shipped_table
+from omegadot.reports.shipped.rows import shipped_rows
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.cluster_sentences import extent, sentence
 from omegadot.reports.summary.clusters import clusters_over_scenarios
@@ -68,6 +70,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         run=record.run,
         command=command_of(record.run),
         choice=choice,
+        shipped=_shipped(record),
         headline=record.run.get("headline") or headline(summary),
         remarks=remarks(summary) + truth(summary),
         counts=counts(summary),
@@ -100,6 +103,16 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         codes=pack_codes(codes),
         provenance=pack_json(origins),
     )
+
+
+def _shipped(record: Record) -> dict[str, Any]:
+    """The table of a run in both setups; {} of another."""
+    rows = shipped_rows(record)
+    if not rows:
+        return {}
+    found, most = shipped_table.cells(rows), shipped_table.MOST
+    texts = {"rows": found[:most], "more": found[most:], "note": shipped_table.note(rows)}
+    return {"heads": shipped_table.heads(rows), **texts}
 
 
 def _anchors(names: tuple[str, ...]) -> dict[str, str]:

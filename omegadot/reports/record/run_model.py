@@ -57,6 +57,7 @@ class _Engine(_Table):
     licence: Text = None
     links: Texts = None
     importers: Texts = None
+    settings: Texts = None
     installed: bool | None = None
     reason: Text = None
     via: Text = None
@@ -134,6 +135,23 @@ class _Cluster(_Table):
     exact: bool = False
 
 
+class _SingleSetting(_Table):
+    """An engine as shipped with one of its settings mended, see `reports.shipped.figures`."""
+
+    scenario: str
+    engine: str
+    integrator: str
+    setting: str
+    timestep: Number | None = None
+    accuracy: Number | None = None
+    outcome: Outcome
+    reason: Text = None
+    flips: list[Number] = []
+    energy_lost: Number | None = None
+    attitude_end: Number | None = None
+    attitude_mean: Number | None = None
+
+
 class _Run(_Table):
     """Records from before there were clusters have none."""
 
@@ -141,6 +159,7 @@ class _Run(_Table):
     scenarios: list[_Scenario]
     tasks: list[_Task]
     clusters: list[_Cluster] = []
+    single_settings: list[_SingleSetting] = []
     omegadot: Text = None
     created: Time | None = None
     command: Texts = None

@@ -16,6 +16,7 @@ from omegadot.reports.text.numbers import angle, knob, plain, short
 
 # What few users of a simulator want, whatever they simulate: each stands in the command as well.
 LARGEST_ANGLE, LARGEST_DRIFT = math.radians(1.0), 0.01
+_MANY = 4  # engines of one order that are named; of more, the least accurate one
 
 
 def inaccurate(
@@ -63,6 +64,8 @@ def _part(order: float | None, figures: Sequence[Figure], text: Callable[[float]
     lost = [figure for figure in figures if not math.isfinite(figure.value)]
     own = {figure.engine: figure for figure in reversed(lost or figures)}
     names = [_run(figure) for figure in sorted(own.values(), key=size, reverse=True)]
+    if len(names) > _MANY:
+        names = [f"{len(names)} engines", f"{names[0]} is worst"]
     whose = "undeclared order" if order is None else f"order {plain(order)}"
     if lost:
         return f"{whose} ({', '.join(names)}) leaves the range of numbers"

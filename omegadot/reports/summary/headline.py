@@ -11,6 +11,7 @@ from omegadot.reports.summary.summary import Cell, Summary
 from omegadot.reports.text.numbers import degrees, knob, listed, quantity, short, times
 
 _FEW = 3  # names in one sentence
+_MANY = 6  # names that a headline lists before it counts them: the table below has all
 _MORE = "The errors over time differ more. "
 
 
@@ -80,6 +81,8 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     named = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
     if len(agreeing) < len(engines):
         named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
+        if len(agreeing) > _MANY:
+            named = f"{len(agreeing)} of {len(engines)} engines"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
     apart += f" {_without(without)}" if without else ""
@@ -94,7 +97,8 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
 def _without(names: Sequence[str]) -> str:
     """Of engines that pass, and give no omega-dot that could be compared."""
     holds, gives = ("holds", "gives") if len(names) == 1 else ("hold", "give")
-    return f"{listed(list(names))} {holds} every gate, and {gives} no omega-dot at a state."
+    who = listed(list(names)) if len(names) <= _MANY else f"{len(names)} engines"
+    return f"{who} {holds} every gate, and {gives} no omega-dot at a state."
 
 
 def _holds(cell: Cell) -> bool:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from omegadot.reports.record.record import Record
+from omegadot.reports.shipped import table as shipped_table
+from omegadot.reports.shipped.rows import shipped_rows
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.advice import Advice
 from omegadot.reports.summary.headline import headline, remarks, truth
@@ -10,7 +12,7 @@ from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.summary.reasons import reason_of
 from omegadot.reports.summary.summary import STATUSES, Cell, Summary, counts, summarise, task_status
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
-from omegadot.reports.text.numbers import first, times
+from omegadot.reports.text.numbers import engine_name, first, times
 
 _FAILING = ("fail", "declared", "crashed", "timeout", "raised", "diverged")
 
@@ -21,6 +23,7 @@ def markdown_of(record: Record) -> str:
     notes = " ".join(remarks(summary) + truth(summary))
     message = record.run.get("headline") or headline(summary)
     lines = [f"### omegadot: {escape(message, 1000)}", ""]
+    lines += _as_shipped(record, COMMENT // 8)
     lines += [escape(notes, 1000), ""] if notes else []
     lines += [f"- {escape(one.sentence, 1000)}" for one in summary.failures]
     lines += [""] * bool(summary.failures)
@@ -34,6 +37,16 @@ def markdown_of(record: Record) -> str:
     command = code(command_of(record.run))
     lines += ["", command] if command else []
     return "\n".join(lines) + "\n"
+
+
+def _as_shipped(record: Record, room: int) -> list[str]:
+    """Each engine in both setups; nothing of a run in one."""
+    rows = shipped_rows(record)
+    if not rows:
+        return []
+    found = table(shipped_table.heads(rows), shipped_table.cells(rows), room, "more rows")
+    note = escape(shipped_table.note(rows), 1000)
+    return [f"**{shipped_table.TITLE}**", "", *found, "", note, ""]
 
 
 def _advice(advice: Advice) -> str:
@@ -80,7 +93,8 @@ def _failures(record: Record, room: int) -> list[str]:
         status = task_status(task)
         if status in _FAILING:
             gates = [gate for gate, v in (task.get("gates") or {}).items() if v == status]
-            own = task["engine"], task.get("integrator") or "", ", ".join(gates)
+            engine = engine_name(task["engine"], setup=task.get("setup") or "physics")
+            own = engine, task.get("integrator") or "", ", ".join(gates)
             key = (status, *own, reason_of(task))
             groups.setdefault(key, []).append(task["scenario"])
     if not groups:

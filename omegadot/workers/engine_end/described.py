@@ -30,7 +30,10 @@ from omegadot.written import written
 
 CHANNELS, FORMATS = get_args(Channel), get_args(Format)
 KNOBS = get_args(Knob)
-LISTS = ("integrators", "conventions", "switched_off", "links", "features", "importers")
+LISTS = (
+    *("integrators", "conventions", "switched_off", "links", "features", "importers"),
+    "settings",
+)
 # In parts of eps, the finest relative tolerance that a rounded estimate of an error can keep.
 ROUNDINGS_OF_AN_ESTIMATE = 450
 # Half the step divides an error by 2^p: of a higher order no two steps show it above rounding.
@@ -49,7 +52,7 @@ def checked_description(found: Any) -> Description:
             raise AnswerError(f"description.{name} is of type {kind}; answer with a tuple")
     if found.precision not in ("float64", "float32"):
         raise AnswerError(f"description.precision is {found.precision!r}; write float64 or float32")
-    for name in ("conventions", "switched_off", "links", "features", "importers"):
+    for name in LISTS[1:]:
         for item in getattr(found, name):
             expect(f"an item of description.{name}", item, str)
     for name, known in (("features", FEATURES), ("importers", FORMATS)):
@@ -58,6 +61,11 @@ def checked_description(found: Any) -> Description:
                 raise AnswerError(
                     f"description.{name} names {item!r}; give one of {', '.join(known)}"
                 )
+    for setting in found.settings:
+        if not setting or one_line(setting) != setting or list(found.settings).count(setting) > 1:
+            raise AnswerError(
+                f"description.settings names {setting!r}; give short names of one line, each once"
+            )
     for integrator in found.integrators:
         expect("an item of description.integrators", integrator, Integrator)
         _check_integrator(integrator)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families.family import (
     AXES,
     NOTHING,
@@ -92,6 +93,41 @@ def _lever_scaled(form: Form, system: System, k: float) -> Form:
     return form_of(with_body(system, center_of_mass=center))
 
 
+def _falls(system: System) -> bool:
+    """Whether the body falls, so that gravity at its place shows."""
+    return system.load.pivot is None and bool(np.any(system.load.gravity))
+
+
+def _gravity_by_height() -> Family:
+    """Gravity as ``1 / (1 + c z)^2``, z the height: c is the inverse of a planet's radius."""
+
+    def guess(evidence: Evidence) -> Array | None:
+        """From the height that is farthest from none, and the part of gravity that acts there."""
+        if not _falls(evidence.system):
+            return None
+        g = np.asarray(evidence.system.load.gravity, dtype=float)
+        heights = -(evidence.states.position @ g) / np.linalg.norm(g)
+        farthest = int(np.argmax(np.abs(heights)))
+        acting = float(evidence.found.linear[farthest] @ g / (g @ g))
+        if not heights[farthest] or not acting > 0.0:
+            return None
+        return np.array([(acting**-0.5 - 1.0) / heights[farthest]])
+
+    family = scalar(
+        "gravity by height",
+        "gravity by height",
+        0.0,
+        _falls,
+        lambda f, s, k: replace(f, fall=f.fall + k),
+        lambda s, k: (
+            "gravity falls with the height z of the centre of mass above the world's origin, as "
+            f"(E / (E + z))^2 with E = {number(1.0 / k)} m"
+        ),
+        "1/m",
+    )
+    return replace(family, guess=guess)
+
+
 def _solve_text(_: System, k: float) -> str:
     if abs(k) < NOTHING:
         return "omega-dot is zero"
@@ -174,6 +210,7 @@ ONE_NUMBER: tuple[Family, ...] = (
         lambda f, s, k: replace(f, weight=k * f.weight, gravity=k * f.gravity),
         scaled("gravity"),
     ),
+    _gravity_by_height(),
     scalar(
         "torque",
         "torque",

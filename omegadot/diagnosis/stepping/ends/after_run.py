@@ -232,4 +232,4 @@ def _worded(what: str, part: float, also: dict[str, bool]) -> str:
     never = [kind for kind, so in also.items() if not so]
     text = f"{of}the first step of a run takes the {what} the run before in place of its own"
     text += f", also {' and '.join(others)}" * bool(others)
-    return text + f", but not {' and '.join(never)}" * bool(never)
+    return text + f", but not {', nor '.join(never)}" * bool(never)

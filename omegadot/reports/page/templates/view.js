@@ -1,30 +1,32 @@
 // The controls of the 3-D view.
 // What the reader has picked stays from scenario to scenario; else each opens with its own.
-const picked = { runs: false, step: false };
+const picked = { runs: false, step: false, mode: false };
 function choose() {
   const number = Number(element("view-scenario").value), scenario = loaded.data.scenarios[number];
   const fresh = scenario !== show.scenario;
   if (fresh) {
-    scenario.geometry ??= geometryOf(scenario.body);
     exact = exactTrajectory(loaded, scenario);
     // It opens at the end, where the runs are farthest apart; playing begins at the start.
     Object.assign(show, { scenario, time: exact.end, playing: false });
+    clock.runs = false;
     element("view-play").textContent = "Play";
     element("view-time").max = exact.end;
     element("view-time").step = exact.end / 1000;
-    scenario.tipOverReach ??= times(scenario.tip, 1 / scenario.geometry.reach);
     offer(scenario);
     if (!picked.step) element("view-step").value = scenario.rank;
+    if (!picked.mode) element("view-mode").value = scenario.everyone ? "all" : "runs";
   }
   const rank = Number(element("view-step").value || 0);
-  const lines = [...document.querySelectorAll(".view-engine")].map((select) => Number(select.value)).filter((line) => line >= 0);
-  const trajectories = [...new Set(lines)].map((line) => {
-    const own = scenario.runs.filter((entry) => entry[0] === line), most = Math.max(...own.map((entry) => entry[1]));
-    return runTrajectory(loaded, scenario, exact, own.find((entry) => entry[1] === Math.min(rank, most)) ?? own[0]);
-  });
   clearScenes(show);
-  show.shown = [exact, ...trajectories].map((trajectory) => ({ trajectory, ...listed(trajectory) }));
-  element("view-runs").replaceChildren(...show.shown.map((one) => one.item));
+  show.all = element("view-mode").value === "all";
+  refine(show.all);
+  scenario.geometry = (scenario.geometries ??= {})[detail.sides] ??= geometryOf(scenario.body);
+  scenario.tipOverReach = times(scenario.tip, 1 / scenario.geometry.reach);
+  show.shown = show.all ? allShown(scenario, rank) : pickedShown(scenario, rank);
+  element("view-runs").replaceChildren(...(show.all ? [] : show.shown.map((one) => one.item)));
+  element("view-wall").replaceChildren(...(show.all ? show.shown.map((one) => one.item) : []));
+  for (const node of document.querySelectorAll("[data-mode]")) node.hidden = (node.dataset.mode === "all") !== show.all;
+  for (const name of ["overlaid", "polhode"]) element(`view-${name}`).disabled = show.all;
   element("view-description").textContent = `${scenario.title}: ${scenario.description}, ${scenario.pivot ? "held at its pivot" : "its centre of mass kept in the middle"}; the world's z axis is up.`
     + (scenario.coarse ? " It turns by more than a right angle between stored samples: what is shown between them is a guess." : "");
   element("view-charts").href = `#${scenario.anchor}`;
@@ -33,40 +35,10 @@ function choose() {
   announce(fresh ? `${scenario.title}.` : "");
 }
 
-function listed(trajectory) {
-  const swatch = made("i", { ariaHidden: "true" }), number = made("span");
-  const item = made("li", {}, swatch, made("b", { textContent: fullName(trajectory) }), " ", number);
-  if (trajectory.gates) item.append(" ", made("span", { className: "v-fail", textContent: `fails: ${trajectory.gates}` }));
-  const content = { textContent: trajectory.line < 0 ? "" : divergenceOf(trajectory) };
-  const there = () => { if (show.playing) play(false); goTo(trajectory.diverges); announce(`${trajectory.name} ${divergenceOf(trajectory)}.`); };
-  item.append(" ", trajectory.diverges === null ? made("span", content) : made("button", { ...content, type: "button", onclick: there }));
-  return { item, swatch, number };
-}
-
-function offer(scenario) {
-  const { lines } = loaded.data, there = [...new Set(scenario.runs.map((entry) => entry[0]))], first = scenario.first;
-  document.querySelectorAll(".view-engine").forEach((select, k) => {
-    const kept = picked.runs && (there.includes(Number(select.value)) || select.value === "-1") ? Number(select.value) : first[k] ?? -1;
-    const option = (text, value) => new Option(text, value, false, value === kept);
-    select.replaceChildren(option("none", -1), ...there.map((line) => option(lines[line].name, line)));
-  });
-}
-
-function tabulate(scenario) {
-  const heads = [...element("view-table").tHead.rows[0].cells].slice(1).map((cell) => cell.textContent);
-  const rows = scenario.runs.map(([line, , knob, , , , diverges, largest, end]) => {
-    const cells = [knob, diverges === null ? "does not" : seconds(diverges), exactly(largest), seconds(end)];
-    const head = made("th", { scope: "row", textContent: loaded.data.lines[line].name });
-    const row = made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));
-    [...row.cells].slice(1).forEach((cell, k) => { cell.dataset.head = heads[k]; });
-    return row;
-  });
-  element("view-table").tBodies[0].replaceChildren(...rows);
-}
-
 function settle() {
   const checked = (id) => element(id).checked;
-  show.options = { overlaid: checked("view-overlaid"), polhode: checked("view-polhode"), trace: checked("view-trace"), vectors: vectorsOf(show.scenario) };
+  show.options = { overlaid: !show.all && checked("view-overlaid"), polhode: !show.all && checked("view-polhode"), trace: checked("view-trace"), vectors: vectorsOf(show.scenario) };
+  if (show.all) placeCells(show);
   render();
 }
 
@@ -84,6 +56,8 @@ async function begin() {
 function connect() {
   const page = element("step"), own = element("view-step");
   element("view-scenario").addEventListener("change", choose);
+  element("view-mode").addEventListener("change", () => { picked.mode = true; choose(); });
+  element("view-which").addEventListener("change", choose);
   document.querySelectorAll(".view-engine").forEach((select) => select.addEventListener("change", () => { picked.runs = true; choose(); }));
   // One step for the whole page: a change here is a change there.
   own.addEventListener("change", () => {

@@ -15,13 +15,22 @@ function cameraOf(azimuth, height, cell) {
   return { to, light, place, eye: times(to, EYE) };
 }
 
-let webgl = null;
-const detail = { sides: 16, tube: 3 };
+// In software, samples within a pixel take most of the time: there they are for a still picture.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+let webgl = null, software = false;
+const clock = { runs: false };
+// How finely round things are drawn. Software takes a triangle as long as a hundred pixels, so
+// that small bodies have few; without WebGL all have.
+const coarse = { sides: 16, tube: 3, ring: 24 }, fine = { sides: 48, tube: 6, ring: 64 };
+const detail = { ...coarse };
+const refine = (small) => Object.assign(detail, webgl && !small ? fine : coarse);
 function startWebgl() {
-  const test = document.createElement("canvas");
-  if (!test.getContext("webgl2")) return;
-  webgl = new THREE.WebGLRenderer({ antialias: true, alpha: true });
-  Object.assign(detail, { sides: 48, tube: 6 });
+  const canvas = document.createElement("canvas"), test = canvas.getContext("webgl2");
+  if (!test) return;
+  software = SOFTWARE.test(test.getParameter(test.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? test.RENDERER));
+  test.getExtension("WEBGL_lose_context")?.loseContext();
+  webgl = new THREE.WebGLRenderer({ antialias: !software, alpha: true });
+  refine(false);
   // The graphics driver may take it back at any time.
   webgl.domElement.addEventListener("webglcontextlost", () => { webgl = null; noteWebgl(); render(); });
 }
@@ -31,7 +40,7 @@ const noteWebgl = () => { element("view-plain").hidden = webgl !== null; };
 function paintScenes(context, width, height, jobs, alpha = 1) {
   context.globalAlpha = alpha;
   if (webgl) {
-    const dots = devicePixelRatio || 1, size = webgl.getSize(new THREE.Vector2());
+    const screen = devicePixelRatio || 1, dots = software && !clock.runs && screen < 2 ? 2 * screen : screen, size = webgl.getSize(new THREE.Vector2());
     if (webgl.getPixelRatio() !== dots) webgl.setPixelRatio(dots);
     if (size.x !== width || size.y !== height) webgl.setSize(width, height, false);
     webgl.setScissorTest(false);

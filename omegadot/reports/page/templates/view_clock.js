@@ -1,6 +1,6 @@
 // What the 3-D view shows now, as a picture and as text, and its clock.
 const box = element("view-box");
-const show = { time: 0, playing: false, visible: false, azimuth: 35, tilt: 22, shown: [], scenario: null, polhode: null, options: {}, widths: {} };
+const show = { time: 0, playing: false, visible: false, azimuth: 35, tilt: 22, shown: [], scenario: null, all: false, polhode: null, options: {}, widths: {} };
 const night = matchMedia("(prefers-color-scheme: dark)");
 let loaded = null, exact = null;
 
@@ -8,12 +8,14 @@ let loaded = null, exact = null;
 let theme = null;
 function measure() {
   const style = getComputedStyle(root), read = (name) => style.getPropertyValue(`--${name}`).trim();
-  const names = ["ink", "soft", "rule", "stand", "panel", "shade", "sans"];
+  const names = ["ink", "soft", "rule", "stand", "panel", "shade", "sans", "fail-back"];
   theme = { ...Object.fromEntries(names.map((name) => [name, read(name)])), mark: night.matches ? "#15181b" : "#ffffff" };
   show.widths = { stage: element("view-stage").clientWidth, errors: element("view-errors").clientWidth };
+  if (show.all) placeCells(show);
   clearScenes(show);
   render();
 }
+const tell = (node, text) => { if (node.textContent !== text) node.textContent = text; };
 const seconds = (time) => `${time.toFixed(2)} s`;
 const degrees = (angle) => `${angle < 10 ? angle.toFixed(1) : Math.round(angle)}°`;
 const exactly = (angle) => `${written(angle, angle < 100 ? 2 : 3)}°`;
@@ -42,10 +44,11 @@ function render() {
   for (const one of show.shown) {
     one.colour = one.trajectory.line < 0 ? theme.soft : loaded.data.lines[one.trajectory.line].colour[night.matches ? 1 : 0];
     one.swatch.style.background = one.colour;
-    if (one.trajectory.line < 0) continue;
     const { ended } = poseAt(one.trajectory, show.time), diverged = one.trajectory.diverges !== null && one.trajectory.diverges <= show.time;
+    if (one.turned) tell(one.turned, flipsText(one.trajectory, show.scenario.flips, show.time));
+    if (one.trajectory.line < 0) continue;
     const off = ended ? `no sample after ${seconds(one.trajectory.end)}` : `${degrees(errorOf(one.trajectory))} off`;
-    if (one.number.textContent !== off) one.number.textContent = off;
+    tell(one.number, off);
     one.status = off + (diverged ? `, diverged at ${seconds(one.trajectory.diverges)}` : "");
     one.item.classList.toggle("diverged", diverged);
   }
@@ -59,14 +62,15 @@ function render() {
 // What the picture shows, as text: read out when it changes.
 function announce(text) {
   const off = show.shown.slice(1).map((one) => `${one.trajectory.name} ${degrees(errorOf(one.trajectory))} off`);
-  const content = `${text} At ${seconds(show.time)}: ${off.join(", ") || "the exact solution alone"}.`.trim();
+  const content = `${text} At ${seconds(show.time)}: ${show.all ? wallText(show) : off.join(", ") || "the exact solution alone"}.`.trim();
   if (box.dataset.ready) element("view-status").textContent = content;
   element("view-stage").setAttribute("aria-label", `The body of ${show.scenario.name}, turning. ${content}`);
 }
 
 function play(on) {
   if (on && show.time >= exact.end) goTo(0);
-  show.playing = on;
+  show.playing = clock.runs = on;
+  if (!on) render();
   element("view-play").textContent = on ? "Pause" : "Play";
   announce(on ? "Playing." : "Paused.");
   run();
@@ -82,9 +86,9 @@ function run() {
     const before = show.time, passed = Math.min(100, Math.max(0, now - last)) / 1000;
     last = now;
     show.time = Math.min(exact.end, show.time + Number(element("view-speed").value) * passed);
-    for (const { trajectory } of show.shown) {
-      if (trajectory.diverges > before && trajectory.diverges <= show.time) announce(`${trajectory.name} ${divergenceOf(trajectory)}.`);
-    }
+    const over = show.shown.filter(({ trajectory }) => trajectory.diverges > before && trajectory.diverges <= show.time);
+    const told = over.map(({ trajectory }) => `${trajectory.name} ${divergenceOf(trajectory)}.`);
+    for (const text of show.all && told.length ? [told.join(" ")] : told) announce(text); // many at once are one message
     if (show.time >= exact.end) {
       waiting = false;
       play(false);

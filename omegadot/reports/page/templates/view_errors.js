@@ -1,7 +1,19 @@
 // The attitude errors over time, under the time's own bar, with a flag where each run diverges.
+const ERRORS = { height: 84, left: 8, top: 16 };
 function paintErrors(canvas, show, theme) {
-  const width = show.widths.errors, height = 84, context = sized(canvas, width, height, theme.panel);
-  const left = 8, right = width - 8, base = height - 6, top = 16;
+  const width = show.widths.errors, { height, left, top } = ERRORS, context = sized(canvas, width, height, theme.panel);
+  // Drawn once: while the clock runs, the hand alone moves.
+  context.drawImage((show.errors ??= errorLines(width, show, theme)), 0, 0, width, height);
+  const x = left + (show.time / show.scenario.times.at(-1)) * (width - 2 * left);
+  context.strokeStyle = theme.ink;
+  context.lineWidth = 1.5;
+  path(context, [[x, height], [x, top - 12]]);
+  context.stroke();
+}
+
+function errorLines(width, show, theme) {
+  const { height, left, top } = ERRORS, canvas = document.createElement("canvas"), context = sized(canvas, width, height, theme.panel);
+  const right = width - left, base = height - 6;
   const end = show.scenario.times.at(-1), most = Math.max(2, ...show.shown.map((one) => one.trajectory.largest));
   const x = (time) => left + (time / end) * (right - left), y = (degrees) => base - (Math.min(degrees, most) / most) * (base - top);
   context.font = `11px ${theme.sans}`;
@@ -11,7 +23,7 @@ function paintErrors(canvas, show, theme) {
   context.stroke();
   show.shown.filter((one) => one.trajectory.error).forEach(({ trajectory, colour }, k) => {
     context.strokeStyle = context.fillStyle = colour;
-    context.lineWidth = 3.2 - k;
+    context.lineWidth = show.all ? 1.2 : 3.2 - k;
     path(context, trajectory.time.map((t, i) => [x(t), y(trajectory.error[i])]));
     context.stroke();
     if (trajectory.diverges === null) return;
@@ -23,7 +35,8 @@ function paintErrors(canvas, show, theme) {
   });
   context.fillStyle = theme.soft;
   context.textBaseline = "alphabetic";
-  const moments = [...new Set(show.shown.map((one) => one.trajectory.diverges).filter((time) => time !== null))];
+  // Of many runs the flags alone: each cell states its time.
+  const moments = show.all ? [] : [...new Set(show.shown.map((one) => one.trajectory.diverges).filter((time) => time !== null))];
   moments.sort((a, b) => a - b).forEach((time, k) => {
     const early = x(time) < (left + right) / 2;
     context.textAlign = early ? "left" : "right";
@@ -31,8 +44,5 @@ function paintErrors(canvas, show, theme) {
   });
   context.textAlign = "right";
   context.fillText(`attitude error, to ${written(most, most < 100 ? 2 : 3)}°`, right, 11);
-  context.strokeStyle = theme.ink;
-  context.lineWidth = 1.5;
-  path(context, [[x(show.time), height], [x(show.time), top - 12]]);
-  context.stroke();
+  return canvas;
 }

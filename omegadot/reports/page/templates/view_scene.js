@@ -7,7 +7,7 @@ function tube(points, radius, closed = false) {
   [curve.getPointAt, curve.getTangentAt] = [curve.getPoint, curve.getTangent];
   return new THREE.TubeGeometry(curve, points.length - (closed ? 0 : 1), radius, detail.tube, closed);
 }
-const ring = (place) => Array.from({ length: 64 }, (_, k) => place(Math.cos((k * Math.PI) / 32), Math.sin((k * Math.PI) / 32)));
+const ring = (place) => Array.from({ length: detail.ring }, (_, k) => place(Math.cos((2 * k * Math.PI) / detail.ring), Math.sin((2 * k * Math.PI) / detail.ring)));
 
 // In its colour where it is in sight, faint where a solid hides it.
 function seenThrough(geometry, colour, faint = 0.25) {

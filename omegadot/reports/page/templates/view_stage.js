@@ -51,11 +51,12 @@ function frame(context, cell, trajectory, colour, time) {
 }
 
 function paintStage(canvas, show, theme) {
+  if (show.all) return paintWall(canvas, show, theme);
   const { shown, options } = show, width = show.widths.stage;
   const count = (options.overlaid ? 1 : shown.length) + (options.polhode ? 1 : 0);
   const { height, cells } = cellsOf(width, count), context = sized(canvas, width, height, theme.panel);
   const together = options.overlaid ? [shown] : shown.map((one) => [one]);
-  const jobs = together.flatMap((runs, k) => runs.map((one) => jobOf(one, cells[k], show, theme)));
+  const jobs = together.flatMap((runs, k) => runs.map((one) => jobOf(one, inner(cells[k]), show, theme)));
   if (options.overlaid) for (const job of jobs) paintScenes(context, width, height, [job], 0.65);
   const polhode = options.polhode ? polhodeJob(cells[count - 1], show, theme) : null;
   const others = [...(options.overlaid ? [] : jobs), ...(polhode ? [polhode] : [])];
@@ -74,10 +75,10 @@ function write(context, theme, text, place, colour) {
 }
 
 // A run at the clock's moment: its scene, and what is written where on the canvas.
-function jobOf(one, outer, show, theme) {
+function jobOf(one, cell, show, theme) {
   const { scenario, options, time } = show, { trajectory, colour } = one, { q, w } = poseAt(trajectory, time);
-  const cell = inner(outer), camera = cameraOf(show.azimuth, show.tilt, cell), ink = options.overlaid ? colour : theme.ink;
-  const points = options.trace && time > 0 ? traceOf(trajectory, scenario.tipOverReach, time) : [], vectors = options.vectors(q, w);
+  const camera = cameraOf(show.azimuth, show.tilt, cell), ink = options.overlaid ? colour : theme.ink;
+  const points = options.trace && time > 0 ? traceOf(trajectory, scenario.tipOverReach, time, show.all ? 24 : 72) : [], vectors = options.vectors(q, w);
   const scene = ((one.scenes ??= {})[ink] ??= sceneOf(scenario, colour, theme, ink));
   scene.set({ q, points, vectors });
   return { cell, camera, scene, labels: vectors.map(([end, label]) => [besideHead(camera, end, label === "H" ? 1 : -1), label, ink]) };
@@ -112,7 +113,7 @@ function clearScenes(show) {
     one.scenes = null;
   }
   if (show.polhode) release(show.polhode);
-  show.polhode = null;
+  show.polhode = show.errors = null;
 }
 
 function dotAt(context, [x, y], radius, colour, rim) {
@@ -124,7 +125,7 @@ function dotAt(context, [x, y], radius, colour, rim) {
 }
 
 // Where the body's tip has been in the last sixth of the run.
-function traceOf(trajectory, tip, time) {
-  const points = 72, span = trajectory.time.at(-1) / 6, from = Math.max(0, time - span);
+function traceOf(trajectory, tip, time, points) {
+  const span = trajectory.time.at(-1) / 6, from = Math.max(0, time - span);
   return Array.from({ length: points + 1 }, (_, k) => rotate(poseAt(trajectory, from + ((time - from) * k) / points).q, tip));
 }

@@ -42,16 +42,16 @@ function columns(codes, start, count, width, largest) {
 function exactTrajectory({ codes, data }, scenario) {
   const count = scenario.times.length, q = columns(codes, scenario.start, count, 4, 1);
   const w = columns(codes, scenario.start + 4 * count, count, 3, scenario.fastest);
-  return { name: `exact, ${scenario.truth}`, knob: "", line: -1, time: scenario.times, q: q.map(normal), w, end: scenario.times.at(-1), diverges: null, largest: 0 };
+  return { name: `exact, ${scenario.truth}`, knob: "", line: -1, time: scenario.times, q: q.map(normal), w, end: scenario.times.at(-1), diverges: null, largest: 0, flips: scenario.flips };
 }
 const normal = (q) => q.map((part) => part / Math.hypot(...q));
 function runTrajectory({ codes, data }, scenario, exact, entry) {
-  const [line, rank, knob, clock, start, count, diverges, largest, end, gates] = entry;
+  const [line, rank, knob, clock, start, count, diverges, largest, end, gates, flips, turns] = entry;
   const frames = scenario.frames[clock];
   const error = columns(codes, start, count, 3, Math.PI);
   const spin = columns(codes, start + 3 * count, count, 3, data.spins * scenario.fastest);
   return {
-    name: data.lines[line].name, knob, line, rank, diverges, largest, end, gates,
+    name: data.lines[line].name, knob, line, rank, diverges, largest, end, gates, flips, turns,
     time: frames.map((f) => scenario.times[f]),
     q: frames.map((f, i) => product(exact.q[f], turnBy(error[i]))),
     w: frames.map((f, i) => plus(exact.w[f], spin[i])),

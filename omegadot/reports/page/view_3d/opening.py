@@ -20,10 +20,14 @@ Key = tuple[str, str, str, float | None, float | None]
 
 @dataclass(frozen=True)
 class Opening:
-    """lanes: what is shown beside the exact solution.  rank: at which step, 0 for the finest."""
+    """lanes: what is shown beside the exact solution.  rank: at which step, 0 for the finest.
+
+    everyone: whether every engine is shown instead, more than `PLACES` having run.
+    """
 
     lanes: list[Lane]
     rank: int = 0
+    everyone: bool = False
 
 
 def key_of(run: RunAttitudes) -> Key:
@@ -53,12 +57,15 @@ def opening(
     apart is the fault and not the order, or the most exact where none has that order; at the finest
     step at which the first of them fails.
     Else of three engines in turn the least and the most exact integrator, at the coarsest step.
+    The reference is not counted among the engines that ran.
     """
+    everyone = len({run.engine for run in runs if run.engine != "reference"}) > PLACES
     failed = [run for run in runs if key_of(run) in failing]
     if not failed:
         judged = [run for run in runs if run.engine != "reference"] or list(runs)
         engines = _by_engine(judged)[:PLACES]
-        return Opening([lane_of(_extreme(own, ranks, k)) for k, own in enumerate(engines)])
+        lanes = [lane_of(_extreme(own, ranks, k)) for k, own in enumerate(engines)]
+        return Opening(lanes, everyone=everyone)
 
     def harm(run: RunAttitudes) -> tuple[bool, float]:  # before runs of a wrong equation alone
         return bool(_OF_A_RUN & set(failing[key_of(run)])), run.largest
@@ -75,7 +82,7 @@ def opening(
         return order is not None and orders.get((run.engine, run.integrator)) != order
 
     best = sorted(sound, key=lambda run: (other_order(run), run.engine in YARDSTICKS, run.largest))
-    return Opening([*lanes, *map(lane_of, best[:1])], rank)
+    return Opening([*lanes, *map(lane_of, best[:1])], rank, everyone)
 
 
 def _extreme(own: Sequence[RunAttitudes], ranks: Ranks, place: int) -> RunAttitudes:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import polars as pl
 
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
@@ -29,6 +30,7 @@ from omegadot.reports.page.view_3d.opening import (
     lane_of,
     opening,
 )
+from omegadot.reports.page.view_3d.turning import Turning, turning_of
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.orders import Orders, declared_orders
 from omegadot.reports.text.numbers import knob
@@ -39,7 +41,7 @@ _SPINS = 8.0
 # One idea a file; what comes first is used by what comes after.
 _SCRIPTS = (
     *("unpack", "written", "view_trajectory", "view_shapes", "view_scene", "view_polhode"),
-    *("view_canvas", "view_stage", "view_errors", "view_clock", "view"),
+    *("view_canvas", "view_stage", "view_wall", "view_errors", "view_clock", "view_runs", "view"),
 )
 
 
@@ -86,9 +88,11 @@ def view_payload(
 
     Each scenario's codes begin with its exact solution, w x y z of the attitude and then omega,
     one row of as many codes as it has times each. A run is ``[line, rank, knob, frames, start,
-    count, diverges, largest, end, gates]``: six rows of `count` codes from `start`, the rotation
-    from the exact attitude and omega less the exact one, at the exact times numbered in ``frames``;
-    gates, those that fail.  first and rank: the lines and the step to open with.
+    count, diverges, largest, end, gates, flips, turns]``: six rows of `count` codes from `start`,
+    the rotation from the exact attitude and omega less the exact one, at the exact times numbered
+    in ``frames``; gates, those that fail; the last two, as in `Turning`, where the exact motion
+    has ``flips``.  first, rank and everyone: the lines and the step to open with, and whether with
+    every engine.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     attitudes, failing = attitudes_of(record.trajectories), failing_runs(record.run["tasks"])
@@ -99,9 +103,10 @@ def view_payload(
         own, chart = attitudes.get(entry["name"]), charts.get(entry["name"])
         if own is None or chart is None or not entry.get("system"):
             continue
-        look = look_of(
-            system_from(entry["system"]), entry.get("definition") or {}, own.angular_velocity[0]
-        )
+        system = system_from(entry["system"])
+        look = look_of(system, entry.get("definition") or {}, own.angular_velocity[0])
+        rows = record.trajectories.filter(pl.col("scenario") == entry["name"])
+        turning = turning_of(rows, system, own.truth)
         fastest = float(np.abs(own.angular_velocity).max()) or 1.0
         scenario: dict[str, Any] = {
             "name": entry["name"],
@@ -112,16 +117,23 @@ def view_payload(
             "coarse": own.coarse,
             "truth": own.truth,
             "pivot": entry["system"].get("pivot") is not None,
+            "flips": turning.exact,
             **look.payload(),
         }
         codes.add(normalize(own.orientation), 1.0)
         codes.add(own.angular_velocity, fastest)
         failed = failing.get(entry["name"], {})
-        scenario.update(_runs(own, chart, places, codes, fastest, failed, orders))
+        scenario.update(_runs(own, chart, places, codes, fastest, failed, orders, turning))
         scenarios.append(scenario)
     description = {
         "lines": [
-            {"name": line.name, "engine": line.engine, "colour": line.colour} for line in lines
+            {
+                "name": line.name,
+                "engine": line.engine + (line.setup != "physics") * f" ({line.setup})",
+                "integrator": line.integrator,
+                "colour": line.colour,
+            }
+            for line in lines
         ],
         "diverged": float(np.rad2deg(DIVERGED)),
         "spins": _SPINS,
@@ -138,6 +150,7 @@ def _runs(
     fastest: float,
     failing: Mapping[Key, list[str]],
     orders: Orders,
+    turning: Turning,
 ) -> dict[str, Any]:
     ranks = rank_of(chart)
     clocks: dict[bytes, int] = {}
@@ -154,7 +167,10 @@ def _runs(
         # When it diverges, s, its largest error, degrees, and when its samples end, s.
         reported = run.diverges, rounded(np.rad2deg(run.largest), 3), run.end
         gates = ", ".join(failing.get(key_of(run), ()))
-        runs.append([line, rank, texts, clock, codes.used, len(run.frames), *reported, gates])
+        turned = turning.runs.get(key_of(run), ())
+        runs.append(
+            [line, rank, texts, clock, codes.used, len(run.frames), *reported, gates, *turned]
+        )
         codes.add(run.error, np.pi)
         codes.add(run.spin, _SPINS * fastest)
     frames = [np.frombuffer(clock, int).tolist() for clock in clocks]
@@ -163,4 +179,5 @@ def _runs(
         "runs": sorted(runs, key=lambda entry: entry[:2]),
         "first": [places[lane] for lane in opened.lanes],
         "rank": opened.rank,
+        "everyone": opened.everyone,
     }

@@ -1,0 +1,1 @@
+"""iDynTree behind the protocol."""

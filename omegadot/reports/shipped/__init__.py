@@ -1,0 +1,1 @@
+"""Engines as shipped beside the same set up for physics, of a run in both setups."""
