@@ -20,9 +20,10 @@ from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Body, Load
 from omegadot.scenarios import ScenarioError
 from omegadot.workers.engine_end.checked import AnswerError
-from omegadot.workers.engine_end.command import CommandAdapter, ProgramError
+from omegadot.workers.engine_end.command import CommandAdapter
 from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.engine_end.program import ProgramError
 from omegadot.workers.frame_reader import read_frame
 from omegadot.workers.harness_end.process import WorkerProcess
 from omegadot.workers.wire import encode_frame
@@ -120,8 +121,8 @@ def test_descriptions_are_checked(tmp_path: Path, description: object, reason: s
         (
             ok({"angle": [[0, 0, 0]], "linear": [[0, 0, 0]]}),
             AnswerError,
-            "'angle' is not a key of the answer to forward; its keys are angular, linear, of which "
-            "it lacks 'angular'",
+            "'angle' is not a key of the answer to forward; its keys are angular, linear, and "
+            "'angular' is missing",
         ),
         ({"outcome": "unsupported"}, UnsupportedError, "has no operation forward"),
         (

@@ -11,7 +11,8 @@ from omegadot.harness.engine_target import target_of
 from omegadot.reference_impl.system import Body, State
 from omegadot.workers.engine_end import program_output
 from omegadot.workers.engine_end.checked import AnswerError
-from omegadot.workers.engine_end.command import NOT_FLUSHED, CommandAdapter, ProgramLostError
+from omegadot.workers.engine_end.command import CommandAdapter
+from omegadot.workers.engine_end.program import NOT_FLUSHED, ProgramLostError
 from omegadot.workers.harness_end import process
 from omegadot.workers.harness_end.process import WorkerProcess
 from omegadot.workers.wire import encode_frame
@@ -98,7 +99,7 @@ def test_a_refusal_without_a_reason_is_no_missing_operation(tmp_path: Path) -> N
     adapter = CommandAdapter(command)
     adapter.load(SYSTEM)
     with pytest.raises(Exception, match="the program refuses load and gives no reason"):
-        adapter._result("load", {"outcome": "unsupported"})
+        adapter._program._result("load", {"outcome": "unsupported"})
 
 
 def big_endian(*values: object) -> bytes:
@@ -133,6 +134,16 @@ def test_big_endian_arrays_are_named(tmp_path: Path) -> None:
         assert str(caught.value) == (
             f"the arrays of the answer to {name} are big-endian; read and write them little-endian"
         )
+
+
+def test_what_is_known_to_be_big_endian_is_not_taken_for_physics(tmp_path: Path) -> None:
+    adapter = CommandAdapter(command_of(tmp_path, forward=ok({"angular": [], "linear": []})))
+    given = SYSTEM.body
+    found = Body(*(np.asarray(value).byteswap() for value in vars(given).values()))
+    with pytest.raises(AnswerError, match="model are big-endian"):
+        adapter._check_order("model", found, given)
+    with pytest.raises(AnswerError, match="forward are big-endian"):
+        adapter.forward_dynamics(ONE[None])
 
 
 def test_a_wrong_body_is_for_the_gates_to_judge(tmp_path: Path) -> None:

@@ -5,22 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.reference_impl.system import Array, Body, State
-from omegadot.workers.engine_end.checked import AnswerError
 
 # An engine in single precision keeps what it is given within a few roundings.
 TOLERANCE = 64 * float(np.finfo(np.float32).eps)
 
 
-def check_byte_order(operation: str, found: Body | State, given: Body | State) -> None:
-    """Raise AnswerError where every array is the one given in the other byte order alone."""
+def is_big_endian(found: Body | State, given: Body | State) -> bool:
+    """Whether every array is the one given in the other byte order alone."""
     pairs = [(np.asarray(getattr(found, name)), np.asarray(g)) for name, g in vars(given).items()]
     if all(_equal(own, due) for own, due in pairs):
-        return
-    if all(_equal(own.byteswap(), due) for own, due in pairs):
-        raise AnswerError(
-            f"the arrays of the answer to {operation} are big-endian; read and write them "
-            "little-endian"
-        )
+        return False
+    return all(_equal(own.byteswap(), due) for own, due in pairs)
 
 
 def _equal(found: Array, given: Array) -> bool:

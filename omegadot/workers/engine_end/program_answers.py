@@ -133,14 +133,16 @@ def _keys_of(what: str, found: Any, kind: type) -> dict[str, Any]:
 
 def _check_keys(what: str, found: Mapping[str, Any], known: list[str], due: list[str]) -> None:
     """Raise AnswerError where a key is unknown, or one that is due is missing."""
-    missing = " and ".join(f"{key!r}{_HINTS.get(key, '')}" for key in due if key not in found)
+    missing = [key for key in due if key not in found]
+    named = " and ".join(f"{key!r}{_HINTS.get(key, '')}" for key in missing)
+    verb, keys = "is" if len(missing) == 1 else "are", ", ".join(known)
+    also = f", and {named} {verb} missing" if missing else ""
     for key in found:
         if key not in known:
-            also = f", of which it lacks {missing}" if missing else ""
-            keys = f"its keys are {', '.join(known)}" if len(known) > 1 else f"give {known[0]!r}"
-            raise AnswerError(f"{one_line(key, 60)!r} is not a key of {what}; {keys}{also}")
+            shown = one_line(key, 60)
+            raise AnswerError(f"{shown!r} is not a key of {what}; its keys are {keys}{also}")
     if missing:
-        raise AnswerError(f"{what} lacks {missing}")
+        raise AnswerError(f"{what} lacks {named}")
 
 
 def _check_types(what: str, found: Mapping[str, Any], types: Mapping[str, str]) -> None:

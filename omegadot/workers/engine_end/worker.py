@@ -22,16 +22,12 @@ from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.workers.engine_end.checked import AnswerError
-from omegadot.workers.engine_end.command import (
-    CommandAdapter,
-    ProgramError,
-    ProgramLostError,
-    end_with_parent,
-)
+from omegadot.workers.engine_end.command import CommandAdapter
 from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.keeper import keep_family
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.engine_end.program import ProgramError, ProgramLostError, end_with_parent
 from omegadot.workers.frame_reader import read_frame
 from omegadot.workers.wire import encode_frame, one_line
 from omegadot.written import written
