@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import re
-import shlex
-import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -21,7 +18,6 @@ from omegadot.reference_impl.system import System
 ENTRY_POINT_GROUP = "omegadot.adapters"
 # Before the command line of a program that serves an engine, in the place of module:Class.
 PROGRAM = "command:"
-_NAMED = re.compile(r"([A-Za-z][\w-]*)=")
 
 BUILT_IN: dict[str, str] = {
     "exact": "omegadot.adapters.exact.adapter:ExactAdapter",
@@ -144,25 +140,6 @@ def through_file(adapter: Adapter, via: str) -> Adapter:
         known = " and ".join(own.importers) or "no such files"
         raise UnsupportedError(f"{own.name} {own.version} has no reader of {via}; it reads {known}")
     return cast(Adapter, _FromFile(adapter, via))
-
-
-def program_of(command: str) -> list[str]:
-    """The words of a command line, its program found. Raises AdapterError."""
-    try:
-        words = shlex.split(_NAMED.sub("", command, count=1) if _NAMED.match(command) else command)
-    except ValueError as error:
-        raise AdapterError(f"{command}: {error}; correct the quotes.") from None
-    program = shutil.which(words[0]) if words else None
-    if program is None:
-        name = words[0] if words else command
-        raise AdapterError(f"{command}: there is no program {name}; install it or check its path.")
-    return [program, *words[1:]]
-
-
-def name_in_command(command: str) -> str:
-    """The engine's name in ``NAME=PROGRAM ...``, "" without one."""
-    found = _NAMED.match(command)
-    return found[1] if found else ""
 
 
 def factory_of(target: str) -> Callable[..., Adapter | str] | str:

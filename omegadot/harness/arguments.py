@@ -13,7 +13,7 @@ from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import is_absent
 from omegadot.gates.case import ACCURACIES, Case, sweep_of
 from omegadot.harness.engine_target import EngineLike, is_target, name_of, target_of
-from omegadot.harness.own_engines import check_own_name, known_engines
+from omegadot.harness.own_engines import check_own_name, known_engines, nearest_engine
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
@@ -46,12 +46,6 @@ def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
     found: dict[str, str] = {}
     for adapter in extra:
         target = target_of(adapter)
-        _, separator, name = target.rpartition(":")
-        if not separator or not name:
-            raise UsageError(
-                f"--adapter {target}: no class is named; give FILE.py:Class or module:Class, or a "
-                "program with its arguments."
-            )
         name = name_of(target)
         check_own_name(name, target)
         if found.setdefault(name, target) != target:
@@ -84,7 +78,7 @@ def engine_choices(
     for given in names:
         name, _, integrator = given.partition(":")
         if name not in known:
-            raise UsageError(f"{option} {given}: no such engine; {nearest(name, known)}.")
+            raise UsageError(f"{option} {given}: no such engine; {nearest_engine(name, known)}.")
         picked.setdefault(name, []).append(integrator)
     picked |= {name: [""] for name in added if name not in picked}
     return [_choice(name, known[name], tuple(dict.fromkeys(i))) for name, i in picked.items()]

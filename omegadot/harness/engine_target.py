@@ -4,30 +4,35 @@ from __future__ import annotations
 
 import ast
 import importlib.util
-import re
+import os
+import shutil
 import sys
 from collections.abc import Container
 from pathlib import Path
 
-from omegadot.adapters.registry import (
-    OURS,
-    PROGRAM,
-    AdapterError,
+from omegadot.adapters.command_line import (
+    file_in_command,
+    has_folder,
     name_in_command,
+    own_name_of,
     program_of,
 )
+from omegadot.adapters.registry import OURS, PROGRAM, AdapterError
 from omegadot.harness.python_path import has_module
 from omegadot.harness.usage import UsageError, nearest
 
 EngineLike = str | type[object]
 """``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, a class, or the
-command line of a program, ``node worker.js`` or ``NAME=node worker.js``."""
+command line of a program, ``./worker``, ``node worker.js`` or ``NAME=node worker.js``."""
+GIVE = "give FILE.py:Class, module:Class or a program, as ./worker or 'node worker.js'"
 
 
 def is_target(engine: EngineLike, known: Container[str]) -> bool:
     """Whether an engine is given by its class, not by one of the names known."""
     if not isinstance(engine, str):
         return True
+    if engine in known:  # a file of this name may stand in the current folder
+        return False
     if is_command(engine):
         return True
     left, separator, right = engine.rpartition(":")
@@ -44,12 +49,23 @@ def _is_module(package: str) -> bool:
 
 
 def is_command(engine: str) -> bool:
-    """Whether it is a program with arguments: words, and no file of that whole name."""
+    """Whether it is a program: words, a file that is no Python, or ``NAME=PROGRAM``."""
     if engine.startswith(PROGRAM):
         return True
     file = engine if engine.endswith(".py") else engine.rpartition(":")[0]
-    words = len(engine.split()) > 1 and "\0" not in engine
-    return words and not (file.endswith(".py") and Path(file).is_file())
+    if "\0" in engine or (file.endswith(".py") and Path(file).is_file()):
+        return False
+    words = engine.split()
+    return len(words) > 1 or (len(words) == 1 and _is_program(engine))
+
+
+def _is_program(word: str) -> bool:
+    """Whether one word is a program; a program that is not there is one, and then refused."""
+    name, sign, program = word.partition("=")
+    named = bool(sign) and not has_folder(name) and ":" not in name
+    if word.endswith(".py") or ".py:" in word:
+        return named and shutil.which(program) is not None
+    return named or os.path.isfile(word) or (has_folder(word) and ":" not in word)
 
 
 def name_of(target: str) -> str:
@@ -59,21 +75,13 @@ def name_of(target: str) -> str:
     if not target.startswith(PROGRAM):
         return target.rpartition(":")[2].removesuffix("Adapter").lower()
     command = target.removeprefix(PROGRAM)
-    given = name_in_command(command)
-    return given or re.sub(r"[^\w-]+", "-", _file_in(command).stem).lower()
-
-
-def _file_in(command: str) -> Path:
-    """The last file in a program's command line."""
-    words = program_of(command)
-    named = [word for word in words[1:] if not word.startswith("-")] or words
-    return Path(named[-1])
+    return name_in_command(command) or own_name_of(command)
 
 
 def file_of(target: str) -> Path | None:
     """The file in which an engine of one's own stands; None where a module is named."""
     if target.startswith(PROGRAM):
-        return _file_in(target.removeprefix(PROGRAM))
+        return file_in_command(target.removeprefix(PROGRAM))
     module = target.rpartition(":")[0]
     return Path(module) if module.endswith(".py") else None
 
@@ -89,14 +97,19 @@ def target_of(engine: EngineLike) -> str:
     if "\0" in engine:
         raise UsageError(f"{engine}: no file has a null character in its name; check the path.")
     if is_command(engine):
+        command = engine.removeprefix(PROGRAM)
+        if engine == command and os.path.isfile(engine) and not has_folder(engine):
+            command = os.path.join(os.curdir, engine)  # not one of this name on the path
         try:
-            program_of(engine.removeprefix(PROGRAM))
+            program_of(command)
         except AdapterError as error:
             raise UsageError(str(error)) from None
-        return PROGRAM + engine.removeprefix(PROGRAM)
+        return PROGRAM + command
     if engine.endswith(".py"):
         return f"{engine}:{_class_in(Path(engine))}"
-    file, _, name = engine.rpartition(":")
+    file, separator, name = engine.rpartition(":")
+    if not separator:
+        raise UsageError(f"{engine}: no class is named; {GIVE}.")
     if file.endswith(".py") and not Path(file).is_file():
         raise UsageError(f"{file}: no such adapter file; check the path.")
     if not name or ".py:" in file:

@@ -11,8 +11,9 @@ from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.frame_reader import read_frame
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
-from omegadot.workers.wire import encode_frame, read_frame
+from omegadot.workers.wire import encode_frame
 
 
 def _sent(message: dict[str, Any]) -> dict[str, Any]:

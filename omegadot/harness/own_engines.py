@@ -11,22 +11,36 @@ The file stands in the current folder. Its table ``adapters`` names engines of o
 from __future__ import annotations
 
 import os
-import re
+from collections.abc import Iterable
 from pathlib import Path
 
+from omegadot.adapters.command_line import NAME, NAME_RULE
 from omegadot.adapters.registry import OURS, PROGRAM, AdapterError, registered
-from omegadot.harness.engine_target import target_of
-from omegadot.harness.usage import UsageError
+from omegadot.harness.engine_target import GIVE, target_of
+from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios.files import read_toml
 
 FILE = "omegadot.toml"
 ADAPTERS = "adapters"
-_LONGEST = 60
-_NAME = re.compile(rf"[A-Za-z][\w.+-]{{0,{_LONGEST - 1}}}", re.ASCII)
+_SHOWN = 60
+
+
+def nearest_engine(term: str, known: Iterable[str]) -> str:
+    """Advice: the nearest engine, and where the name of one's own is looked for."""
+    none = "" if os.path.lexists(FILE) else ", which has none"
+    return f"{nearest(term, known)}; names of your own stand in {FILE} of the current folder{none}"
 
 
 def check_own_name(name: str, target: str) -> None:
-    """Raise UsageError where an engine of one's own would pass for a built-in one."""
+    """Raise UsageError where an engine of one's own would pass for a built-in one, and where a
+    program's name is none.
+    """
+    command = target.removeprefix(PROGRAM)
+    if command != target and not NAME.fullmatch(name):
+        raise UsageError(
+            f"{command}: its name, {name}, is none; write another before it, as NAME=PROGRAM, of "
+            f"{NAME_RULE}."
+        )
     same = {own for other, own in OURS.items() if other.casefold() == name.casefold()}
     if not same or target in same:
         return
@@ -58,17 +72,13 @@ def known_engines() -> dict[str, str]:
         raise UsageError(f'{FILE}: {ADAPTERS} is no table; write lines such as toy = "toy.py:Toy".')
     for name, target in found.items():
         where = f"{FILE}: {ADAPTERS}.{name}"
-        if not _NAME.fullmatch(name):
+        if not NAME.fullmatch(name):
             raise UsageError(
-                f"{FILE}: {ADAPTERS} names an engine {name[:_LONGEST]!r}; give a name of at most "
-                f"{_LONGEST} letters, digits, '-', '_', '+' and '.', a letter first."
+                f"{FILE}: {ADAPTERS} names an engine {name[:_SHOWN]!r}; give a name of {NAME_RULE}."
             )
         if not isinstance(target, str) or not target.strip():
             shown = "empty" if isinstance(target, str) else f"{target!r}, which is no text"
-            raise UsageError(
-                f"{where} is {shown}; give FILE.py:Class, module:Class or a program with its "
-                "arguments."
-            )
+            raise UsageError(f"{where} is {shown}; {GIVE}.")
         if name.casefold() in {other.casefold() for other in known}:
             raise UsageError(f"{where}: there is an engine of this name; give another.")
         try:

@@ -2,7 +2,7 @@
 
 A frame is: 8 bytes, the header's length (big endian); the header, UTF-8 JSON, in which an array
 stands as ``{"$array": i}``; then the arrays in order, as little-endian float64. Nothing is
-pickled, so an old worker and a new harness understand each other.
+pickled, so an old worker and a new harness understand each other. `frame_reader` reads them.
 """
 
 from __future__ import annotations
@@ -11,15 +11,13 @@ import dataclasses
 import json
 import math
 import struct
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Array, Body, Load, System
 
-# Text that gets into the channel looks like a header of 10^18 bytes.
-LONGEST_HEADER = 2**30
 MOST_CHARACTERS = 500
 _SHORTENED = " ..."
 
@@ -45,16 +43,6 @@ def _pack(value: Any, arrays: list[Array]) -> Any:
     return value
 
 
-def _unpack(value: Any, arrays: list[Array]) -> Any:
-    if isinstance(value, dict):
-        if "$array" in value:
-            return arrays[value["$array"]]
-        return {key: _unpack(item, arrays) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_unpack(item, arrays) for item in value]
-    return value
-
-
 def encode_frame(message: dict[str, Any]) -> bytes:
     """One message as a frame; arrays anywhere in it travel as raw float64.
 
@@ -66,35 +54,6 @@ def encode_frame(message: dict[str, Any]) -> bytes:
         {"body": body, "shapes": [a.shape for a in arrays]}, allow_nan=False
     ).encode()
     return struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays)
-
-
-def _read_exactly(stream: BinaryIO, count: int) -> bytes:
-    data = stream.read(count)
-    if len(data) != count:
-        raise EOFError("the other side closed the channel")
-    return data
-
-
-def read_frame(stream: BinaryIO) -> dict[str, Any]:
-    """Read one message.
-
-    Raises EOFError when the other side is gone, ValueError where what comes is no frame.
-    """
-    start = _read_exactly(stream, 8)
-    (length,) = struct.unpack(">Q", start)
-    if length > LONGEST_HEADER:
-        raise ValueError(
-            f"it begins with {start!r}, where a header's length is due; standard output is for "
-            "answers alone, print to standard error"
-        )
-    header = json.loads(_read_exactly(stream, length))
-    arrays = []
-    for shape in header["shapes"]:
-        count = int(np.prod(shape, dtype=np.int64))
-        flat = np.frombuffer(_read_exactly(stream, 8 * count), dtype="<f8")
-        arrays.append(flat.reshape(shape).copy())
-    unpacked: dict[str, Any] = _unpack(header["body"], arrays)
-    return unpacked
 
 
 def system_from(message: dict[str, Any]) -> System:

@@ -131,6 +131,16 @@ def test_a_state_at_rest_hides_no_cause_of_inverse_dynamics() -> None:
     assert "leave out what damping takes up" in text
 
 
+def test_a_torque_that_overflows_has_no_share_of_any_term() -> None:
+    """Caught: a ValueError of rounding what is not finite, reported as a defect."""
+    system, states = CASES[2].system, random_states(CASES[2], 60, [1])
+    requested = random_acceleration(system, states, [2])
+    for size in (np.inf, np.nan, 1e308):
+        torque = np.full_like(states.angular_velocity, size)
+        with np.errstate(all="ignore"):
+            assert torque_causes(system, states, requested, torque) == []
+
+
 BOTH_TORQUES = {"torque": [BODY_TORQUE, WORLD_TORQUE]}
 
 

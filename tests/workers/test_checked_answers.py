@@ -186,7 +186,7 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
             {"integrators": (replace(EULER, coordinates="body"),)},
             "of euler are 'body'; give one of",
         ),
-        ({"integrators": (replace(EULER, orders={"speed": 1}),)}, "'speed'; give one of omega_dot"),
+        ({"integrators": (replace(EULER, orders={"speed": 1}),)}, "'speed'; give one of omega, at"),
         ({"integrators": (replace(EULER, orders={"omega": 1.5}),)}, "the order of euler in omega"),
         ({"integrators": (replace(EULER, orders={"omega": True}),)}, "is True; give a whole"),
         ({"integrators": (replace(EULER, orders={"omega": 54}),)}, "is 54; give a whole .* to 53"),

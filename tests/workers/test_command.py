@@ -1,6 +1,6 @@
 """Engines that a program serves: the frames from its end, and what is wrong with an answer."""
 
-import shlex
+import io
 import shutil
 import sys
 from importlib.metadata import EntryPoint
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import EULER, ONE, SYSTEM, TOY, command_of, ok
 
 from omegadot.adapters import registry
 from omegadot.adapters.protocol import UnsupportedError
@@ -16,55 +17,39 @@ from omegadot.harness.arguments import adapters_named, engine_choices
 from omegadot.harness.engine_target import file_of, target_of
 from omegadot.harness.own_engines import known_engines
 from omegadot.harness.usage import UsageError
-from omegadot.reference_impl.system import Body, State, System
+from omegadot.reference_impl.system import Body, Load
 from omegadot.scenarios import ScenarioError
 from omegadot.workers.engine_end.checked import AnswerError
-from omegadot.workers.engine_end.command import CommandAdapter, ProgramError
+from omegadot.workers.engine_end.command import CommandAdapter
 from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.engine_end.program import ProgramError
+from omegadot.workers.frame_reader import read_frame
 from omegadot.workers.harness_end.process import WorkerProcess
+from omegadot.workers.wire import encode_frame
 
 ROOT = Path(__file__).parents[2]
 WORKER = ROOT / "docs" / "examples" / "worker.js"
-# A program without NumPy that answers with what it finds in a table of its own.
-PROGRAM = """\
-import json, os, signal, struct, sys
-ANSWERS = {answers!r}
-while True:
-    length = sys.stdin.buffer.read(8)
-    if len(length) < 8: break
-    header = json.loads(sys.stdin.buffer.read(struct.unpack(">Q", length)[0]))
-    for shape in header["shapes"]:
-        count = 1
-        for n in shape: count *= n
-        sys.stdin.buffer.read(8 * count)
-    answer = ANSWERS[header["body"]["operation"]]
-    if isinstance(answer, int): os.kill(os.getpid(), answer)
-    text = answer if isinstance(answer, str) else json.dumps({{"body": answer, "shapes": []}})
-    frame = struct.pack(">Q", len(text)) + text.encode() if text[:1] == "{{" else text.encode()
-    sys.stdout.buffer.write(frame)
-    sys.stdout.buffer.flush()
-"""
-EULER = {"name": "euler", "scheme": None, "orders": {}}
-TOY = {"name": "toy", "version": "1", "integrators": [EULER], "features": ["forward_dynamics"]}
-SYSTEM = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),))
-ONE = State(np.array([1.0, 0, 0, 0]), np.zeros(3), np.zeros(3), np.zeros(3))
-
-
-def ok(result: object) -> dict[str, object]:
-    return {"outcome": "ok", "result": result}
-
-
-def command_of(folder: Path, **answers: object) -> str:
-    """A program with these answers, which describes itself as TOY unless they do."""
-    file = folder / "program.py"
-    file.write_text(PROGRAM.format(answers={"describe": ok(TOY), **answers}), encoding="utf-8")
-    return shlex.join([sys.executable, "-S", str(file)])
 
 
 def test_the_worker_in_the_documents_is_the_one_that_runs() -> None:
     page = (ROOT / "docs" / "worker-protocol.md").read_text(encoding="utf-8")
     assert page.partition("```js\n")[2].partition("```")[0] == WORKER.read_text(encoding="utf-8")
+
+
+def test_the_exchange_in_the_documents_is_what_is_sent_and_read() -> None:
+    page = (ROOT / "docs" / "worker-protocol.md").read_text(encoding="utf-8")
+    request, answer = (frame_of(part.partition("```")[0]) for part in page.split("```text\n")[1:])
+    body = Body(np.array(2.0), np.zeros(3), np.diag([1.0, 2.0, 2.5]))
+    load = Load(gravity=np.array([0.0, 0.0, -9.81]))
+    assert request == encode_frame({"operation": "load", "body": body, "load": load})
+    assert read_frame(io.BytesIO(answer)) == ok(None)
+
+
+def frame_of(block: str) -> bytes:
+    """The bytes of an exchange as it is printed."""
+    lines = (line.partition("   #")[0] for line in block.splitlines())
+    return b"".join(line.encode() if line[:1] == "{" else bytes.fromhex(line) for line in lines)
 
 
 def test_a_worker_in_javascript_passes_every_gate() -> None:
@@ -80,12 +65,31 @@ def test_a_worker_in_javascript_passes_every_gate() -> None:
 @pytest.mark.parametrize(
     ("description", "reason"),
     [
-        (None, "describe is no table of keys; answer with one"),
-        ({**TOY, "integrators": 3}, "describe: integrators is no list"),
-        ({**TOY, "colour": "red"}, "describe has no key 'colour'; give name, version"),
-        ({"name": "toy", "integrators": []}, "describe lacks a key; it needs more of version"),
-        ({**TOY, "integrators": [{**EULER, "order": 1}]}, "an integrator of describe has no key"),
-        ({**TOY, "name": 3}, "description.name is of type int"),
+        (None, "the answer to describe is null; give an object with name, version"),
+        ({**TOY, "integrators": 3}, "integrators is the number 3; give a list of objects"),
+        ({**TOY, "colour": "red"}, "'colour' is not a key of the answer to describe; its keys"),
+        ({"name": "toy", "integrators": []}, "the answer to describe lacks 'version'"),
+        (
+            {**TOY, "integrators": [{**EULER, "order": 1}]},
+            "'order' is not a key of an integrator of the answer to describe",
+        ),
+        (
+            {**TOY, "integrators": [{"name": "euler", "orders": {}}]},
+            "an integrator of the answer to describe lacks 'scheme' (null if you do not know it)",
+        ),
+        ({**TOY, "name": 3}, "the answer to describe: name is the number 3; give a text"),
+        ({**TOY, "links": "https://a.b"}, "is the text 'https://a.b'; give a list of texts"),
+        ({**TOY, "links": {"home": "a.b"}}, "links is an object; give a list of texts"),
+        ({**TOY, "conventions": ["wxyz", 3]}, "conventions has the number 3; give a list of texts"),
+        ({**TOY, "licence": None}, "licence is null; give a text"),
+        (
+            {**TOY, "integrators": [{**EULER, "orders": {"omega": 1.5}}]},
+            "orders has the number 1.5; give an object of whole numbers",
+        ),
+        (
+            {**TOY, "integrators": [{**EULER, "orders": {"model": 1}}]},
+            "'model'; give one of omega, attitude, energy, angular_momentum, linear_momentum, posi",
+        ),
     ],
 )
 def test_descriptions_are_checked(tmp_path: Path, description: object, reason: str) -> None:
@@ -97,12 +101,36 @@ def test_descriptions_are_checked(tmp_path: Path, description: object, reason: s
 @pytest.mark.parametrize(
     ("found", "error", "reason"),
     [
-        (ok({"angular": [[0, 0, 0]], "linear": [[0, 0]]}), AnswerError, "has the shape (1, 2)"),
+        (
+            ok({"angular": [[0, 0, 0]], "linear": [[0, 0]]}),
+            AnswerError,
+            "linear has the shape [1, 2]; give [1, 3]",
+        ),
         (ok({"angular": [[0, 0, 0]], "linear": [[1], [2, 3]]}), AnswerError, "no array of numbers"),
-        (ok({"angular": "fast", "linear": [[0, 0, 0]]}), AnswerError, "angular is str"),
-        (ok([1, 2]), AnswerError, "forward is no table of keys"),
+        (
+            ok({"angular": "fast", "linear": [[0, 0, 0]]}),
+            AnswerError,
+            "angular is the text 'fast'; give",
+        ),
+        (
+            ok([1, 2]),
+            AnswerError,
+            "the answer to forward is a list; give an object with angular, linear",
+        ),
         ({"outcome": "fine"}, AnswerError, "the outcome is 'fine'; give ok, unsupported or raised"),
+        (
+            ok({"angle": [[0, 0, 0]], "linear": [[0, 0, 0]]}),
+            AnswerError,
+            "'angle' is not a key of the answer to forward; its keys are angular, linear, and "
+            "'angular' is missing",
+        ),
         ({"outcome": "unsupported"}, UnsupportedError, "has no operation forward"),
+        (
+            {"outcome": "unsupported", "reason": ""},
+            UnsupportedError,
+            "the program refuses forward and gives no reason",
+        ),
+        ([1], AnswerError, "forward: the answer has no outcome"),
         ({"outcome": "raised", "reason": "no\n\x1b[1m air"}, ProgramError, "no [1m air"),
     ],
 )

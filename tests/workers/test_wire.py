@@ -10,7 +10,8 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
-from omegadot.workers.wire import description_of, encode_frame, read_frame, system_from
+from omegadot.workers.frame_reader import read_frame
+from omegadot.workers.wire import description_of, encode_frame, system_from
 
 
 def through(message: dict) -> dict:

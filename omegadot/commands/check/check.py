@@ -24,10 +24,10 @@ from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporter, Reporting, reporting
 from omegadot.commands.typed import typed
 from omegadot.harness.arguments import Via, adapters_named, several
-from omegadot.harness.engine_target import EngineLike, is_target, target_of
-from omegadot.harness.own_engines import known_engines
+from omegadot.harness.engine_target import GIVE, EngineLike, is_target, target_of
+from omegadot.harness.own_engines import known_engines, nearest_engine
 from omegadot.harness.python_path import setting_for
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import UsageError
 from omegadot.scenarios import ScenarioLike
 from omegadot.written import written
 
@@ -180,10 +180,7 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Argu
         adapters = [target_of(engine)]
         name = next(iter(adapters_named(adapters)))
     else:
-        raise UsageError(
-            f"{engine}: no such engine; {nearest(engine, known)}, or give "
-            "FILE.py:Class, module:Class or a program with its arguments."
-        )
+        raise UsageError(f"{engine}: no such engine; {nearest_engine(engine, known)}; or {GIVE}.")
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]
     return replace(arguments, engines=engines, adapters=adapters, required=[name])
 

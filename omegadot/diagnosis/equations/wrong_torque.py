@@ -140,6 +140,8 @@ def _share(rest: Array, term: Array, bound: Array) -> float | None:
     if not (size > 0.0 and np.isfinite(size)):
         return None
     k = float(off @ line) / size
+    if not np.isfinite(k):  # of a torque that is not, or that overflows
+        return None
     return float(round(k)) if abs(k - round(k)) < WHOLE else k  # its rounding may be that of a load
 
 

@@ -66,18 +66,17 @@ def checked_trajectory(trajectory: Any) -> Trajectory:
     return Trajectory(time, state, trajectory.seconds)
 
 
-def checked_seconds(seconds: Any, whole: float) -> float:
+def checked_seconds(seconds: Any, whole: float, what: str = "run().seconds") -> float:
     """What a run's steps took, in s: as the adapter measured it, or else the whole call.
 
     Less than a tick is nothing measured: a coarser clock has not moved. It is a tick at least.
     """
     if seconds is None:
         return max(whole, TICK)
-    found = float(numbers("run().seconds", seconds, ()))
+    found = float(numbers(what, seconds, ()))
     if not 0.0 <= found <= whole:
         raise AnswerError(
-            f"run().seconds is {written(found)}; give a part of the {written(whole)} s that the "
-            "call took"
+            f"{what} is {written(found)}; give a part of the {written(whole)} s that the call took"
         )
     return found if found >= TICK else max(whole, TICK)
 

@@ -15,7 +15,6 @@ import numpy as np
 from omegadot.adapters.protocol import (
     FEATURES,
     Adapter,
-    Channel,
     Description,
     Format,
     Integrator,
@@ -28,7 +27,9 @@ from omegadot.workers.engine_end.checked import AnswerError, expect, numbers
 from omegadot.workers.wire import one_line
 from omegadot.written import written
 
-CHANNELS, FORMATS = get_args(Channel), get_args(Format)
+FORMATS = get_args(Format)
+# Those in which an integrator has an order; others of `Channel` are of gates without steps.
+CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
 KNOBS = get_args(Knob)
 LISTS = (
     *("integrators", "conventions", "switched_off", "links", "features", "importers"),
@@ -125,8 +126,8 @@ def _check_integrator(integrator: Integrator) -> None:
             known = "it is known to omegadot score only; declare None" if scored else "give None"
             raise AnswerError(
                 f"the scheme of {integrator.name} is {integrator.scheme!r}, which the reference "
-                f"lacks; {known} (scheme = None) for a scheme that is not listed, or one of "
-                f"{', '.join(SCHEMES)}"
+                f"lacks; {known} (scheme = None, in JSON null) for a scheme that is not listed, or "
+                f"one of {', '.join(SCHEMES)}"
             )
     if integrator.coordinates not in COORDINATES:
         raise AnswerError(
@@ -172,6 +173,6 @@ def _check_order(what: str, order: Any) -> None:
         # a whole number may have more digits than Python writes
         found = order if isinstance(order, bool) or abs(order) < 10**6 else "of many digits"
         raise AnswerError(
-            f"{what} is {found}; give a whole number from 1 to {HIGHEST_ORDER}, or None where the "
-            "channel is conserved"
+            f"{what} is {found}; give a whole number from 1 to {HIGHEST_ORDER}, or None (in JSON "
+            "null) where the channel is conserved"
         )

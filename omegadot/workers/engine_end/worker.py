@@ -22,17 +22,14 @@ from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.workers.engine_end.checked import AnswerError
-from omegadot.workers.engine_end.command import (
-    CommandAdapter,
-    ProgramError,
-    ProgramLostError,
-    end_with_parent,
-)
+from omegadot.workers.engine_end.command import CommandAdapter
 from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.keeper import keep_family
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
-from omegadot.workers.wire import encode_frame, one_line, read_frame
+from omegadot.workers.engine_end.program import ProgramError, ProgramLostError, end_with_parent
+from omegadot.workers.frame_reader import read_frame
+from omegadot.workers.wire import encode_frame, one_line
 from omegadot.written import written
 
 NO_REASON = "the adapter states no reason; give UnsupportedError a sentence that does"
@@ -90,10 +87,15 @@ def _lost(error: ProgramLostError) -> dict[str, Any]:
     return {"outcome": "crashed", "reason": one_line(_text_of(error)), "leaves": True}
 
 
-def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
+def _built(target: str, setup: Setup, via: str, answers: BinaryIO) -> tuple[Adapter | None, bytes]:
     """The adapter, with the frame that holds its description; None where it cannot be built."""
+
+    def waiting(what: str) -> None:
+        answers.write(encode_frame({"outcome": "waiting", "reason": what}))
+        answers.flush()
+
     try:
-        adapter = build_adapter(target, setup, via, CommandAdapter)
+        adapter = build_adapter(target, setup, via, partial(CommandAdapter, waiting=waiting))
     except (AdapterError, ImportError) as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
@@ -108,7 +110,7 @@ def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
 def serve(target: str, setup: Setup, via: str, requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer requests until the harness closes the channel."""
     own = os.getpid()
-    adapter, frame = _built(target, setup, via)
+    adapter, frame = _built(target, setup, via, answers)
     going_on = True
     while True:
         if os.getpid() != own:  # a child that the engine forked; the channel is its parent's

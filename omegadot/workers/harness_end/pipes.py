@@ -14,8 +14,9 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
+from omegadot.workers.frame_reader import read_frame
 from omegadot.workers.harness_end.family import GUARD, ask_to_end, end_family
-from omegadot.workers.wire import encode_frame, one_line, read_frame
+from omegadot.workers.wire import encode_frame, one_line
 
 STDERR_BYTES_KEPT = 4000
 SECONDS_TO_DRAIN = 1.0
@@ -86,7 +87,7 @@ class Pipes:
         assert stream is not None
         try:
             while True:
-                self.answers.put(read_frame(stream))  # type: ignore[arg-type]
+                self.answers.put(read_frame(stream))
         except (EOFError, OSError):
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(SECONDS_TO_DRAIN)

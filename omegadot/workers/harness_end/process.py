@@ -8,6 +8,7 @@ import queue
 import signal
 import subprocess
 import sys
+import time
 import uuid
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -139,11 +140,14 @@ class WorkerProcess:
     def _wait(
         self, pipes: Pipes, seconds: float, late: str, operation: str, fields: dict[str, Any]
     ) -> Answer:
+        end, note = time.monotonic() + seconds, ""
         try:
             answer = pipes.answers.get(timeout=seconds)
+            if operation == "start" and (note := _waited_for(answer)):
+                answer = pipes.answers.get(timeout=max(0.0, end - time.monotonic()))
         except queue.Empty:
             self.stop()
-            return Answer("timeout", f"{late}; the worker was ended")
+            return Answer("timeout", f"{late}; the worker was ended{note}")
         if isinstance(answer, Lost):
             return Answer("crashed", self._post_mortem(pipes, answer.how))
         try:
@@ -153,6 +157,9 @@ class WorkerProcess:
             return Answer("crashed", self._post_mortem(pipes, how))
         if answer.pop("leaves", False):
             self.stop()
+            if answer["outcome"] == "crashed":
+                answer["reason"] = _with_output(answer["reason"], pipes)
+                self.deaths.append(answer["reason"])
         return Answer(**{**answer, "reason": one_line(answer.get("reason", ""))})
 
     def _post_mortem(self, pipes: Pipes, how: str) -> str:
@@ -163,8 +170,7 @@ class WorkerProcess:
         else:
             how = _ending(pipes.process.wait())
         self._pipes = None
-        text = pipes.last_output()
-        found = f"{how}; its last output: {text}" if text else how
+        found = _with_output(how, pipes)
         if not pipes.ended_here:
             self.deaths.append(found)
         return found
@@ -188,6 +194,19 @@ class WorkerProcess:
         if pipes is not None:
             pipes.ended_here = pipes.process.poll() is None
             pipes.end()
+
+
+def _waited_for(frame: Any) -> str:
+    """What a worker tells before its program has answered; "" of any other frame."""
+    if isinstance(frame, dict) and frame.get("outcome") == "waiting":
+        return f"; {one_line(str(frame.get('reason')))}"
+    return ""
+
+
+def _with_output(how: str, pipes: Pipes) -> str:
+    """How a process ended, with what it wrote last."""
+    text = pipes.last_output()
+    return f"{how}; its last output: {text}" if text else how
 
 
 def _ending(code: int) -> str:
