@@ -15,7 +15,7 @@ from omegadot.gates.errors.measured_run import MeasuredRun
 from omegadot.gates.rows import worst
 from omegadot.gates.steps.scheme import comparison_keys, order_rows, orders_seen
 from omegadot.gates.truth import SchemeKey
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON
 
 STEPS = (0.02, 0.01, 0.005)
 
@@ -179,10 +179,10 @@ def test_a_likeness_names_where_it_is_least():
     assert found.share == pytest.approx(10.0)
 
 
-def test_without_a_declared_scheme_all_are_compared(case):
+def test_without_a_declared_scheme_all_that_are_common_are_compared(case):
     assert comparison_keys(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4")]
     silent = comparison_keys(declared("own"), case.system)
-    assert {key.scheme for key in silent} == set(SCHEMES)
+    assert {key.scheme for key in silent} == set(COMMON)
     offset = builtin("offset-com").system
     at_origin = replace(declared("own"), coordinates="origin-world")
     assert {key.coordinates for key in comparison_keys(at_origin, offset)} == {"origin-world"}

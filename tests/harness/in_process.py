@@ -17,7 +17,7 @@ from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.outcome import EngineCase
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.harness.requests.truth_requests import case_companions, case_truth
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON, SCHEMES
 from omegadot.scenarios import load_builtin
 from omegadot.workers.harness_end.process import Answer
 
@@ -37,7 +37,7 @@ def builtin(name: str, *timesteps: float) -> Case:
     return case_of(load_builtin(name), timesteps)
 
 
-def truth_of(case: Case, schemes: tuple[str, ...] = tuple(SCHEMES)) -> Truth:
+def truth_of(case: Case, schemes: tuple[str, ...] = tuple(COMMON)) -> Truth:
     """The truth with these schemes stepped in addition."""
     local: Any = Local(ReferenceAdapter())
     truth = case_truth(local, case)

@@ -16,7 +16,7 @@ from omegadot.workers.wire import one_line
 Arrays = TypeVar("Arrays", bound=State | Acceleration | Body)
 DESCRIPTION = {
     **dict.fromkeys(("name", "version", "precision", "licence"), "a text"),
-    **dict.fromkeys(("conventions", "switched_off", "links"), "a list of texts"),
+    **dict.fromkeys(("conventions", "switched_off", "settings", "links"), "a list of texts"),
     **dict.fromkeys(("features", "importers"), "a list of texts"),
     "integrators": "a list of objects",
 }
