@@ -221,7 +221,7 @@ def test_a_triangle_of_the_inertia_is_named_on_free_and_pivoted_bodies() -> None
 
     found = named(upper, CASES)
     text = (
-        "in inverse dynamics, where omega-dot is solved for, of what stays, the lower triangle of "
+        "in inverse dynamics, where it multiplies omega-dot, of what stays, the lower triangle of "
         "the inertia is zero"
     )
     assert all(texts == [text] for texts in found.values()), found

@@ -65,7 +65,11 @@ def _fits(every: Sequence[Evidence], first: Evidence, rules: Sequence[NearRule])
                 low, high = _around(known, tried[first_], tried[last])
                 # Bodies that are all spheres have no gyroscopic term, and one more number each.
                 seen = np.isfinite(high) or rule in SMALL_RULES
-                if seen or not all(_is_sphere(e, place, rule, 2.0 * low) for e in every):
+                if place.parts == ("spin",):  # this is that it is missing, where these are wrong
+                    shown, seen = [e for e in every if e.clear], False
+                else:
+                    shown = list(every)
+                if seen or not all(_is_sphere(e, place, rule, 2.0 * low) for e in shown):
                     yield _Fit(rule, place, low, high)
 
 

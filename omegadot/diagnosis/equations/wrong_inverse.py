@@ -24,6 +24,7 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, System
 
 MOST_CONDITIONS = 2
+SOLVED, MULTIPLIED = "where omega-dot is solved for", "where it multiplies omega-dot"
 
 
 class WrongInverse:
@@ -109,7 +110,7 @@ def _forms(every: Sequence[Evidence]) -> list[str]:
     kept = left or []
     alike = {of_whole(text) for text in kept if of_whole(text) != text}  # on free bodies alone
     plain = [text.removeprefix("in the dynamics, ") for text in kept if text not in alike]
-    return [f"in inverse dynamics, {text}" for text in plain]
+    return [f"in inverse dynamics, {text.replace(SOLVED, MULTIPLIED)}" for text in plain]
 
 
 def _wrong_forms(system: System) -> Mapping[str, Form]:
