@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.loads.load_spell_laws import OF_SHARE
 from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.stepping.other_equations import is_refuted
 from omegadot.diagnosis.stepping.turns.between_steps import passes_between
 from omegadot.diagnosis.stepping.vanishing.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.vanishing.kinematics import (
@@ -31,6 +32,8 @@ from omegadot.diagnosis.stepping.vanishing.kinematics import (
 )
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
+from omegadot.diagnosis.wording.features import surely_in_common
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -49,6 +52,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 # than what is seen of a run: stepping again by all that may be wrong takes long. The order that
 # steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
+MOST_CONDITIONS = 2
 LOGGED = "the run is logged"
 AFTER_STEP = f"{IN_SINGLE} after each step"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
@@ -301,4 +305,22 @@ class IntegratorCauses:
                 if self._of_runs.tried:
                     over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}
-        return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])
+        texts = self._not_refuted(agreed(self._of_runs.texts, over), known)
+        return either([over_run(text, known) for text in texts])
+
+    def _not_refuted(self, texts: Sequence[str], known: Mapping[str, Sequence[str]]) -> list[str]:
+        """Of equations that the steps of sound scenarios refute, on which bodies alone they are so.
+
+        They are left out where that is not known.
+        """
+        scenes, found = self._across.scenes, list[str]()
+        for text in texts:
+            every = ((scene, scene.evidence.get(self._kept.source)) for scene in scenes.values())
+            against = [s.features for s, e in every if e is not None and is_refuted(text, e)]
+            shown = [scenes[name].features for name, own in known.items() if text in own]
+            common = surely_in_common(shown, against) if against else []
+            if not against:
+                found.append(text)
+            elif 0 < len(common) <= MOST_CONDITIONS:
+                found.append(text + only_where(text, " or where ".join(common)))
+        return found

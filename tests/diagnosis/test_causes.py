@@ -201,7 +201,8 @@ def test_what_inverse_dynamics_leave_out_on_some_bodies_is_named_with_them(
     """Caught: the same of every body, though inverse dynamics of most are right."""
     found, names = WrongInverse(), list[str]()
     diagonal = np.diag([1.0, 1.6, 2.1]).tolist()
-    loads = ({}, {"pivot": PIVOT}, {"damping": 0.3}, {"pivot": PIVOT, "gravity": GRAVITY})
+    more = ({}, {"damping": 0.3}, {"gravity": GRAVITY}, {"torque": BODY_TORQUE})
+    loads = [{**load, **held} for load in more for held in ({}, {"pivot": PIVOT})]
     for k, (load, tensor) in enumerate(product(loads, (TENSOR, diagonal))):
         one = case(f"scenario-{k}", load, tensor=tensor)
         states = random_states(one, 60, [1])
@@ -213,6 +214,7 @@ def test_what_inverse_dynamics_leave_out_on_some_bodies_is_named_with_them(
         evidence = of_inverse_dynamics(one.system, states, requested, torque)
         found.add(one.name, evidence, features_of(one.system, one.initial))
     text = f"inverse dynamics leave out the gyroscopic term, but only where {condition}"
+    assert len(names) == 8
     assert [found.causes(name) for name in names] == [[text]] * len(names)
 
 

@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.equations.hypotheses.unsymmetric import of_whole
 from omegadot.diagnosis.equations.wrong_torque import fitting_torques, plainest, would_show
-from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.features import Features, surely_in_common
 from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import norm
@@ -73,7 +73,7 @@ class WrongInverse:
     def _where(self, text: str, against: Sequence[str]) -> str:
         """On which scenarios alone it is so, if that is known."""
         shown = [self._features[name] for name in self._evidence if text in self._of(name)]
-        common = in_common(shown, [self._features[name] for name in against])
+        common = surely_in_common(shown, [self._features[name] for name in against])
         if 0 < len(common) <= MOST_CONDITIONS:
             return only_where(text, " or where ".join(common))
         others = "other" if len(against) == 1 else "others"

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, accelerations, form_of, stacked
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import SLACK
@@ -18,6 +19,7 @@ from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State, System
 
 SEEN = 1e-9  # relative: a change that is smaller is not followed
+IN_STEPS = "in the steps, "
 NOT_STEPPED = ("report", "precision")
 
 
@@ -74,7 +76,18 @@ def other_equations(reported: ReportedRun) -> list[str]:
         found, forms = [found[k] for k in fits], [forms[k] for k in fits]
         if not forms or run is reported:
             break
-    return [f"in the steps, {text}" for text in found]
+    return [f"{IN_STEPS}{text}" for text in found]
+
+
+def is_refuted(text: str, evidence: Evidence) -> bool:
+    """Whether such a cause would show in the sound steps of another scenario."""
+    system = evidence.system
+    if not text.startswith(IN_STEPS) or not np.all(evidence.sound):
+        return False
+    what = text.removeprefix(IN_STEPS)
+    named = [one for one in hypotheses(system) if one.text.strip() == what]
+    form = wrong_form(named[:1], system, form_of(system)) if named else None
+    return form is not None and evidence.visible(accelerations(form, evidence.states))
 
 
 def _in_lanes(reported: ReportedRun, forms: Sequence[Form]) -> State:

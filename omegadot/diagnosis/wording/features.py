@@ -145,6 +145,12 @@ def ways_of(scenarios: Sequence[Features]) -> int:
     return ODDS * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
 
 
+def surely_in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
+    """As `in_common`, where no experiment can refute what is chance: of many scenarios alone."""
+    ways = comb(len(shown) + len(others), len(shown))
+    return in_common(shown, others) if ways >= ways_of(shown) > 0 else []
+
+
 def in_common(
     shown: Sequence[Features],
     others: Sequence[Features],
