@@ -102,6 +102,46 @@ def test_a_run_that_blew_up_or_rests_has_no_flip_there() -> None:
     assert [flip.time for flip in huge.flips] == [0.5]
 
 
+TIME = np.linspace(0.0, 8.0, 401)
+
+
+def turning(period: float = 4.0) -> Array:
+    """Omega that turns from z to x and on: its z changes sign at period/4, and every period/2."""
+    angle = 2.0 * np.pi * TIME / period
+    return np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], -1)
+
+
+def test_flips_are_found_between_samples_and_in_a_body_that_is_braked() -> None:
+    # linear between samples, of a cosine near its zero: off by (w dt)^3 / 16, less than 2e-6 s
+    for speed in (1.0, np.exp(-2.0 * TIME)[:, None]):
+        found = flips_of(TIME, speed * turning(), SYSTEM)
+        assert found is not None
+        assert found.times == pytest.approx([1.0, 3.0, 5.0, 7.0], abs=1e-5)
+    turned = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    inertia = turned @ SYSTEM.body.inertia @ turned.T
+    other = System((replace(SYSTEM.body, inertia=inertia),))
+    found = flips_of(TIME, turning() @ turned.T, other)
+    assert found is not None
+    assert found.times == pytest.approx([1.0, 3.0, 5.0, 7.0], abs=1e-5)
+
+
+def test_a_body_that_wobbles_across_or_spins_elsewhere_does_not_flip() -> None:
+    noise = 0.4 * np.sin(40.0 * TIME)
+    across = np.stack([np.ones_like(TIME), np.zeros_like(TIME), noise], -1)
+    for omega in (across, np.tile([0.0, 0.1, 9.0], (401, 1)), np.zeros((401, 3))):
+        assert flips_of(TIME, omega, SYSTEM) == Flips((), 8.0)
+
+
+def test_what_follows_a_sample_that_is_not_finite_is_left_out() -> None:
+    omega = turning()
+    omega[TIME > 4.0] = np.nan
+    found = flips_of(TIME, omega, SYSTEM)
+    assert found is not None
+    assert (len(found.flips), found.until) == (2, 4.0)
+    omega[10] = np.inf
+    assert flips_of(TIME, omega, SYSTEM) == Flips((), TIME[9])
+
+
 EXACT = Flips((Flip(1.0, 1.5, 2.0), Flip(4.0, 4.5, 5.0), Flip(7.0, 7.5, math.inf)), 8.0)
 
 
@@ -110,23 +150,46 @@ EXACT = Flips((Flip(1.0, 1.5, 2.0), Flip(4.0, 4.5, 5.0), Flip(7.0, 7.5, math.inf
     [
         ([1.4, 4.7], 8.0, "yes"),
         ([1.4, 4.7, 7.9], 8.0, "yes"),
+        ([2.9, 3.1], 8.0, "yes"),  # the middles are 3 and 6
         ([], 8.0, "never"),
         ([], 3.0, "never"),
         ([], 1.9, None),
         ([1.5], 3.0, "yes"),
         ([1.5], 8.0, "late"),
-        ([2.1, 4.5], 8.0, "late"),
-        ([1.5, 3.9], 8.0, "early"),
-        ([1.5, 4.5, 6.9], 8.0, "early"),
+        ([3.1, 4.5], 8.0, "late"),
+        ([1.5, 6.1], 8.0, "late"),
+        ([3.0], 3.0, "late"),
+        ([1.5, 2.9], 8.0, "early"),
+        ([1.5, 2.9], 3.0, "early"),
+        ([1.5, 4.5, 5.9], 8.0, "early"),
         ([1.5, 4.5, 7.5, 7.9], 8.0, "early"),
     ],
 )
-def test_whether_a_run_turns_over_when_the_exact_motion_does(
+def test_whether_a_run_turns_over_as_the_exact_motion_does(
     times: list[float], until: float, expected: str | None
 ) -> None:
-    own = Flips(tuple(Flip(time - 0.3, time, time + 0.3) for time in times), until)
-    assert turned_over(own, EXACT) == expected
+    assert turned_over(times, until, EXACT) == expected
+
+
+@pytest.mark.parametrize(
+    ("times", "expected"),
+    [
+        ((1.1, 3.2, 5.9), "yes"),
+        ((1.9, 2.1, 7.9), "yes"),
+        ((), "never"),
+        ((1.1, 3.2), "late"),
+        ((2.5, 3.2, 5.0), "late"),
+        ((1.1, 1.9, 3.0, 5.0), "early"),
+        ((1.0, 3.0, 5.0, 7.0), "early"),
+        ((1.0, 4.5, 5.0), "late"),
+    ],
+)
+def test_flips_are_in_time_where_each_is_the_one_of_its_part(
+    times: tuple[float, ...], expected: str
+) -> None:
+    exact = Flips(tuple(Flip(time - 0.3, time, time + 0.3) for time in (1.0, 3.0, 5.0)), 8.0)
+    assert turned_over(times, 8.0, exact) == expected
 
 
 def test_a_motion_without_flips_asks_for_none() -> None:
-    assert turned_over(EXACT, Flips((), 8.0)) is None
+    assert turned_over(EXACT.times, 8.0, Flips((), 8.0)) is None

@@ -38,7 +38,7 @@ def test_every_term_has_two_sentences_and_a_formula_or_unit():
         ("fraction of round-off bound", ["round-off bound"]),
         ("Failures and declared exceptions", ["declared exception"]),
         ("reordered schemers", []),
-        ("whose body never flips", ["flip count"]),  # not the flips within
+        ("whose body never flips", ["flips in time"]),  # not the flips within
         ("flip time", ["flip"]),
         ("scheme-bound order", ["order"]),  # no part of a compound
     ],

@@ -219,6 +219,56 @@ def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
     assert "scenario" not in many
 
 
+def both_setups(record):
+    """The record with every engine but the reference in a second setup."""
+    tasks = [*record.run["tasks"]]
+    tasks += [{**t, "setup": "as-shipped"} for t in tasks if t["engine"] != "reference"]
+    other = record.metrics.filter(pl.col("engine") != "reference")
+    shipped = other.with_columns(setup=pl.lit("as-shipped"))
+    run = {**record.run, "tasks": tasks}
+    return replace(record, run=run, metrics=pl.concat([record.metrics, shipped]))
+
+
+def failing_in(record, engine, *setups):
+    for place, entry in enumerate(record.run["tasks"]):
+        who = entry["engine"], entry.get("setup") or "physics", entry["scenario"]
+        if who in [(engine, setup, "sphere") for setup in setups]:
+            record = with_task(record, place, gates={"equation": "fail"})
+    return record
+
+
+def test_a_headline_counts_an_engine_in_two_setups_once(record):
+    """Caught: "2 of 4 engines fail" of two engines in two setups."""
+    both = both_setups(record)
+    assert headline(summarise(both)).startswith("Both engines agree with the Newton–Euler")
+
+    def message(engine, *setups):
+        return headline(summarise(failing_in(both, engine, *setups)))
+
+    assert message("dart", "as-shipped") == "1 of 2 engines fails: dart as-shipped, on sphere."
+    assert message("dart", "physics") == (
+        "1 of 2 engines fails: dart set up for physics, on sphere."
+    )
+    assert message("dart", "physics", "as-shipped") == "1 of 2 engines fails: dart, on sphere."
+
+
+def test_a_headline_of_one_engine_in_two_setups_counts_nothing():
+    both = both_setups(build(("sphere",), engines={"dart": INTEGRATORS["dart"]}))
+    assert headline(summarise(both)).startswith("dart agrees with")
+    shipped = headline(summarise(failing_in(both, "dart", "as-shipped")))
+    assert shipped == "dart as-shipped fails on sphere."
+
+
+def test_an_engine_that_ran_in_one_setup_alone_does_not_agree_in_both(record):
+    both = both_setups(record)
+    for place, entry in enumerate(both.run["tasks"]):
+        if (entry["engine"], entry.get("setup")) == ("dart", "as-shipped"):
+            both = with_task(both, place, outcome="crashed", gates={})
+    message = headline(summarise(both))
+    assert message.startswith("mujoco and dart set up for physics (of 2 engines) agree with")
+    assert message.endswith("No verdict on dart as-shipped (crashed).")
+
+
 def test_an_engine_without_a_verdict_does_not_agree(record):
     crashed = record
     for place, entry in enumerate(record.run["tasks"]):

@@ -87,18 +87,12 @@ The body turns over: omega along the axis of middle inertia changes its sign. Th
 the difference of its time from the exact one.
 = Unit: s
 
-flip count (never flips)
+flips in time (flips late, flips early, never flips)
 Where no torque acts, a flip counts that leads H from within 45° of the axis of middle inertia to
-within 45° of its opposite, so that a wobble is none. A run is late where a flip of its comes after
-the exact one of the same number has ended, and early where before that one has begun.
+within 45° of its opposite, so that a wobble is none. The middles between the exact flips part the
+time, and a run flips in time where each part has one flip of its own, late or early by the first
+that has not, and without any it never flips.
 = Values: never, late, early or yes, one a run
-
-flips in time
-The middles between the exact flips cut a run into parts, and an engine flips in time (yes) where
-each part has one flip of its own. It is late or early where it has flipped less or more often up to
-the first middle, or the end of the run, at which the numbers differ; no is no flip at all.
-= Formula: a flip leads from u ≥ 1/2 to u ≤ −1/2 or back, its time is that of u = 0; u = ω·e / |ω|,
-  with e the axis of middle inertia
 
 floor
 How far a perfect answer in double precision may be from the exact solution (in single precision

@@ -147,6 +147,7 @@ class _SingleSetting(_Table):
     outcome: Outcome
     reason: Text = None
     flips: list[Number] = []
+    until: Number | None = None
     energy_lost: Number | None = None
     attitude_end: Number | None = None
     attitude_mean: Number | None = None

@@ -12,9 +12,9 @@ from omegadot.reports.charts.divergence import STATE, states_of, system_from
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import SETUPS, YARDSTICKS
 from omegadot.reports.shipped.figures import Figures, figures_of, restored
-from omegadot.reports.shipped.flips import Flipping, in_time
+from omegadot.reports.summary.flips import Flipping, Flips, flips_of, turned_over
 
-FLIPS_ON = "t-handle"
+PREFERRED = "t-handle"
 LESS = 0.995  # nearer to 1 a ratio is 1 in two digits
 AS_SHIPPED = SETUPS[1]
 Knob = TypeVar("Knob")
@@ -26,7 +26,7 @@ class ShippedRow:
     """An engine's integrator, with one step or accuracy, in both setups.
 
     settings: by the name of a setting, the run as shipped with this one mended.
-    exact_flips: s, those of the exact motion; () where flips are not looked at.
+    exact_flips: those of the exact motion; None where it has none, or a torque acts.
     """
 
     scenario: str
@@ -37,12 +37,13 @@ class ShippedRow:
     physics: Figures
     as_shipped: Figures
     settings: Mapping[str, Figures] = field(default_factory=dict)
-    exact_flips: tuple[float, ...] = ()
+    exact_flips: Flips | None = None
 
     def flipping(self, run: Figures) -> Flipping | None:
         """Whether one of its runs flips as the exact motion does; None where there is no answer."""
-        known = bool(self.exact_flips) and run.outcome == "ok"
-        return in_time(run.flips, self.exact_flips) if known else None
+        if self.exact_flips is None or run.until is None:
+            return None
+        return turned_over(run.flips, run.until, self.exact_flips)
 
     def ratio(self, run: Figures) -> float | None:
         """A run's mean attitude error in parts of that as shipped."""
@@ -74,7 +75,7 @@ def middle(values: Iterable[Knob], key: Any = None) -> Knob:
 def scenario_of(names: Iterable[str]) -> str:
     """The scenario of the table: the T-handle, or else the first."""
     found = list(names)
-    return FLIPS_ON if FLIPS_ON in found else found[0]
+    return PREFERRED if PREFERRED in found else found[0]
 
 
 def shipped_rows(record: Record) -> tuple[ShippedRow, ...]:
@@ -117,11 +118,12 @@ class _Measured:
         self._system = system_from(entries[scenario]) if entries[scenario] else None
         self._exact = samples.filter(engine="exact").unique("time").select("time", *STATE)
         self._samples = samples.filter(pl.col("engine") != "exact")
-        self.exact_flips: tuple[float, ...] = ()
-        if scenario == FLIPS_ON and self._system and len(self._exact):
+        self.exact_flips: Flips | None = None
+        if self._system and len(self._exact):
             exact = self._exact.sort("time")
-            times, state = exact.get_column("time").to_numpy(), states_of(exact)
-            self.exact_flips = figures_of(self._system, times, state, state).flips
+            times, omega = exact.get_column("time").to_numpy(), states_of(exact).angular_velocity
+            found = flips_of(times, omega, self._system)
+            self.exact_flips = found if found and found.flips else None
 
     def figures(self, setup: str, run: Run, outcome: str) -> Figures:
         """Those of one run, or its outcome alone where it has no samples at exact times."""

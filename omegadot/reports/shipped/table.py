@@ -1,4 +1,4 @@
-"""The rows of "As shipped" as text: for the page, for a comment, and in one line."""
+"""The rows of "As shipped" as text, for the page and for a comment."""
 
 from __future__ import annotations
 
@@ -8,11 +8,16 @@ from itertools import groupby
 
 from omegadot.reports.shipped.figures import Figures
 from omegadot.reports.shipped.rows import ShippedRow
+from omegadot.reports.summary.flips import Flipping
 from omegadot.reports.text.numbers import knob, short
 from omegadot.written import written
 
 TITLE = "As shipped"
 ALIKE = "nothing: both are alike"
+WORDS: dict[Flipping, str] = {
+    **{"never": "never flips", "late": "flips late", "early": "flips early"},
+    "yes": "flips in time",
+}
 MOST = 12  # rows of the page; the others are folded away
 _WHO, _LAST = ("engine", "integrator"), ("what mends most",)
 _FLIPS = ("flips, as shipped", "flips, physics")
@@ -53,7 +58,7 @@ def _order(row: ShippedRow) -> Order:
     ratio = row.ratio(row.physics)
     shipped = row.flipping(row.as_shipped)
     same = shipped == row.flipping(row.physics)
-    return same, shipped != "no", row.alike, math.inf if ratio is None else ratio
+    return same, shipped != "never", row.alike, math.inf if ratio is None else ratio
 
 
 def note(rows: tuple[ShippedRow, ...]) -> str:
@@ -62,7 +67,7 @@ def note(rows: tuple[ShippedRow, ...]) -> str:
     knobs = " or ".join(dict.fromkeys(knob(one.timestep, one.accuracy) for one in rows))
     exact = ""
     if row.exact_flips:
-        exact = f" The exact motion flips at {_times(row.exact_flips)}."
+        exact = f" The exact motion flips at {_times(row.exact_flips.times)}."
     return (
         f"On {row.scenario}, {knobs}.{exact} Energy lost is of the largest exact kinetic energy; "
         "less than zero is a gain. The attitude error is that at the end, with the mean over the "
@@ -71,41 +76,14 @@ def note(rows: tuple[ShippedRow, ...]) -> str:
     )
 
 
-def line(rows: tuple[ShippedRow, ...]) -> str:
-    """One sentence for a terminal; "" of a run in one setup."""
-    if not rows:
-        return ""
-    engines = [list(own) for _, own in groupby(rows, lambda row: row.engine)]
-    told = f"{TITLE}, on {rows[0].scenario}"
-    if rows[0].exact_flips:
-        shipped, physics = (
-            sum(all(row.flipping(getattr(row, setup)) == "yes" for row in own) for own in engines)
-            for setup in ("as_shipped", "physics")
-        )
-        count = f"{shipped} of {len(engines)} engines flip in time, {physics} set up for physics"
-        told += f": with every integrator {count}"
-    mended = "; ".join(filter(None, map(_mended, engines)))
-    return f"{told}. What mends most: {mended or 'no single setting'}."
-
-
-def _mended(rows: list[ShippedRow]) -> str:
-    """An engine with the setting that mends most of all that its integrators have; "" for none."""
-    found = [most for row in rows if (most := row.mends_most)]
-    if not found:
-        return ""
-    name, ratio = min(found, key=lambda most: most[1])
-    return f"{rows[0].engine} {name}, error × {short(ratio)}"
-
-
 def mends(row: ShippedRow) -> str:
     """The setting that mends most, with what it does; or why there is none."""
     most = row.mends_most
     if most:
         name, ratio = most
         flips = row.flipping(row.settings[name])
-        told = {"yes": ", flips in time", "no": ", never flips"}
-        shown = told.get(flips, f", flips {flips}") if flips else ""
-        return f"{name}: error × {short(ratio)}{shown}"
+        told = f", {WORDS[flips]}" if flips else ""
+        return f"{name}: error × {short(ratio)}{told}"
     if row.alike:
         return ALIKE
     return f"none of {len(row.settings)}" if row.settings else "–"
@@ -120,8 +98,8 @@ def _texts(row: ShippedRow) -> Cells:
 def _flips(row: ShippedRow, run: Figures) -> str:
     found = row.flipping(run)
     if found is None:
-        return run.outcome
-    return "no" if found == "no" else f"{found}: {_times(run.flips)}"
+        return "–" if run.outcome == "ok" else run.outcome
+    return WORDS[found] + (f": {_times(run.flips)}" if run.flips else "")
 
 
 def _times(flips: tuple[float, ...]) -> str:

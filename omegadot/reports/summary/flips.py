@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +14,7 @@ from numpy.typing import NDArray
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import Array, System
 
+Flipping = Literal["yes", "never", "late", "early"]
 # Nearer than this to the middle axis, H is nearer to it than to the plane of the other two.
 NEAR = math.cos(math.pi / 4)
 # Moments as close as this, relative to the largest, differ by the rounding of their eigenvalues.
@@ -36,6 +40,11 @@ class Flips:
 
     flips: tuple[Flip, ...]
     until: float
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """s, one a flip."""
+        return tuple(flip.time for flip in self.flips)
 
 
 def flip_axis(system: System) -> Array | None:
@@ -79,30 +88,27 @@ def flips_of(time: Array, omega: Array, system: System) -> Flips | None:
     return Flips(tuple(found), float(time[-1]))
 
 
-def turned_over(own: Flips, exact: Flips) -> str | None:
-    """Whether a run turns over when the exact motion does: yes, never, late or early.
+def turned_over(times: Sequence[float], until: float, exact: Flips) -> Flipping | None:
+    """Whether a run turns over as the exact motion does.
 
-    Flip by flip, in order: late where it comes after the end of the exact flip of its number, early
-    where before its start; the first that is neither on time decides. Exact flips that end after
-    the run's last sample are not asked for; None where none is.
+    times, until: s, of the run's flips and of its last finite sample.  The middles between the
+    exact flips part the time, and ``yes`` is one flip in each part. ``never`` is none at all. Else
+    the first flip that lies outside the part of its number decides, or is missing: ``late`` where
+    it comes after that part or not at all, ``early`` before it or beyond the exact ones. Exact
+    flips that end after the run's last sample may be missing; None where all do.
     """
-    asked = [flip for flip in exact.flips if flip.end <= own.until]
-    if not asked:
+    due = [flip.end <= until for flip in exact.flips]
+    if not any(due):
         return None
-    if not own.flips:
+    if not times:
         return "never"
-    for place, flip in enumerate(asked):
-        if place >= len(own.flips) or own.flips[place].time > flip.end:
-            return "late"
-        if own.flips[place].time < flip.start:
-            return "early"
-    further = own.flips[len(asked) :]
-    allowed = exact.flips[len(asked) :]
-    if len(further) > len(allowed) or any(
-        one.time < flip.start for one, flip in zip(further, allowed, strict=False)
-    ):
-        return "early"
-    return "yes"
+    middles = [0.5 * (one + other) for one, other in pairwise(exact.times)]
+    for place, (start, end) in enumerate(pairwise((-math.inf, *middles, math.inf))):
+        if place >= len(times):
+            return "late" if due[place] else "yes"
+        if not start <= times[place] < end:
+            return "late" if times[place] >= end else "early"
+    return "early" if len(times) > len(exact.flips) else "yes"
 
 
 def _along(omega: Array, inertia: Array, axis: Array) -> Array:

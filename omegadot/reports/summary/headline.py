@@ -7,6 +7,7 @@ from typing import Any
 
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.figures import Figure, size
+from omegadot.reports.summary.judged_engines import JudgedEngines, judged_engines
 from omegadot.reports.summary.summary import Cell, Summary
 from omegadot.reports.text.numbers import degrees, knob, listed, quantity, short, times
 
@@ -17,7 +18,7 @@ _MORE = "The errors over time differ more. "
 
 def headline(summary: Summary) -> str:
     """Which engines agree with the equations and how closely, which fail where: one sentence."""
-    return _verdict(summary, _judged_engines(summary))
+    return _verdict(summary, judged_engines(summary))
 
 
 def remarks(summary: Summary) -> list[str]:
@@ -46,58 +47,58 @@ def step_notes(engines: Iterable[Mapping[str, Any]]) -> list[str]:
     return found
 
 
-def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
-    """Cells per column; the yardsticks are left out unless they alone ran or they fail."""
-    every = [(column, cell) for (_, column), cell in summary.cells.items()]
-    judged = [(c, cell) for c, cell in every if c.engine not in YARDSTICKS or cell.status == "fail"]
-    cells: dict[str, list[Cell]] = {}
-    for column, cell in judged or every:
-        cells.setdefault(column.label, []).append(cell)
-    return cells
-
-
-def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
-    failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
-    if failing:
-        verb = "fails" if len(failing) == 1 else "fail"
-        named = _failing(summary, failing)
+def _verdict(summary: Summary, engines: JudgedEngines) -> str:
+    if failing := engines.failing:
+        named = engines.named(failing)
+        text = _failing(summary, named)
         if len(engines) == 1:
-            return f"{named.replace(', on ', ' fails on ', 1)}."
-        count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb}: {named}.{_open(engines, failing)}"
-    measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
-    passed = {n for n, cells in engines.items() if any(map(_holds, cells))}
+            return f"{text.replace(', on ', ' fails on ', 1)}."
+        verb = "fails" if len(named) == 1 else "fail"
+        count = f"{len(named)} of {times(len(engines), 'engine')}"
+        return f"{count} {verb}: {text}.{_open(engines, failing)}"
+    cells = engines.cells
+    measured = {name: worst for name, own in cells.items() if (worst := _residual(own))}
+    passed = {n for n, own in cells.items() if any(map(_holds, own))}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
-    excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
+    excused = [n for n, own in cells.items() if any(c.runs.get("declared") for c in own)]
     agreeing = [name for name in measured if name in passed and name not in excused]
-    without = [name for name in engines if name in passed and name not in (*measured, *excused)]
+    without = [name for name in cells if name in passed and name not in (*measured, *excused)]
     if excused and not agreeing:
-        return f"Every gate holds except for declared exceptions: {listed(excused)}."
+        known = listed(list(engines.named(excused)))
+        return f"Every gate holds except for declared exceptions: {known}."
     if not agreeing:
         if not without:
             return "No verdict: no run of an engine was judged on the equation of motion."
-        return f"{_without(without)}{_open(engines, without)}"
+        return f"{_without(engines, without)}{_open(engines, without)}"
     largest = max((measured[name] for name in agreeing), key=size)
-    named = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
-    if len(agreeing) < len(engines):
-        named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
-        if len(agreeing) > _MANY:
-            named = f"{len(agreeing)} of {len(engines)} engines"
-    verb = "agrees" if len(agreeing) == 1 else "agree"
-    apart = f" Declared exceptions: {listed(excused)}." if excused else ""
-    apart += f" {_without(without)}" if without else ""
+    who, verb = _agreeing(engines, agreeing)
+    apart = f" Declared exceptions: {listed(list(engines.named(excused)))}." if excused else ""
+    apart += f" {_without(engines, without)}" if without else ""
     apart += _open(engines, [*agreeing, *excused, *without])
     return (
-        f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
+        f"{who} {verb} with the Newton–Euler equations at identical states: the largest "
         f"omega-dot residual is {quantity(largest.value, largest.unit)} "
         f"({largest.engine} on {largest.scenario}).{apart}"
     )
 
 
-def _without(names: Sequence[str]) -> str:
+def _agreeing(engines: JudgedEngines, labels: Sequence[str]) -> tuple[str, str]:
+    """Those that agree, and the verb; of many their number, and whose setups do not all agree."""
+    names, whole = list(engines.named(labels)), engines.whole(labels)
+    verb = "agrees" if len(names) == 1 else "agree"
+    if whole == len(engines):
+        return {1: names[0], 2: "Both engines"}.get(whole, f"All {whole} engines"), verb
+    if len(names) <= _MANY:
+        return f"{listed(names)} (of {times(len(engines), 'engine')})", verb
+    parts = [name for name in names if name not in engines.labels]
+    return listed([f"{whole} of {len(engines)} engines", *parts]), verb
+
+
+def _without(engines: JudgedEngines, labels: Sequence[str]) -> str:
     """Of engines that pass, and give no omega-dot that could be compared."""
+    names = list(engines.named(labels))
     holds, gives = ("holds", "gives") if len(names) == 1 else ("hold", "give")
-    who = listed(list(names)) if len(names) <= _MANY else f"{len(names)} engines"
+    who = listed(names) if len(names) <= _MANY else f"{len(names)} engines"
     return f"{who} {holds} every gate, and {gives} no omega-dot at a state."
 
 
@@ -108,15 +109,18 @@ def _holds(cell: Cell) -> bool:
     return bool(cell.runs.get("pass") or (cell.runs.get("diverged") and cell.residual))
 
 
-def _open(engines: dict[str, list[Cell]], named: Sequence[str]) -> str:
+def _open(engines: JudgedEngines, named: Sequence[str]) -> str:
     """The engines besides those that are named on which there is no verdict; "" without any."""
 
     def is_judged(cells: list[Cell]) -> bool:
         passed = any(map(_holds, cells)) and any(c.residual for c in cells)
         return passed or any(c.runs.get("declared") for c in cells)
 
-    open_ = [n for n, cells in engines.items() if n not in named and not is_judged(cells)]
-    texts = [f"{name} ({_outcomes(engines[name])})" for name in open_]
+    open_ = [n for n, cells in engines.cells.items() if n not in named and not is_judged(cells)]
+    texts = [
+        f"{name} ({_outcomes([cell for label in own for cell in engines.cells[label]])})"
+        for name, own in engines.named(open_).items()
+    ]
     return f" No verdict on {listed(texts)}." if texts else ""
 
 
@@ -126,20 +130,24 @@ def _outcomes(cells: list[Cell]) -> str:
     return listed(list(dict.fromkeys("no equation" if end == "pass" else end for end in ends)))
 
 
-def _failing(summary: Summary, engines: list[str]) -> str:
-    """The failing engines, each with its own scenarios where they differ and are few."""
-    places: dict[str, list[str]] = {name: [] for name in engines}
-    for (scenario, column), cell in summary.cells.items():
-        if cell.status == "fail" and scenario not in places[column.label]:
-            places[column.label].append(scenario)
-    own = {name: sorted(found) for name, found in places.items()}
-    first = own[engines[0]]
+def _failing(summary: Summary, engines: Mapping[str, list[str]]) -> str:
+    """The failing engines, each with its own scenarios where they differ and are few.
+
+    engines: by name the labels of the columns.
+    """
+    failing = [where for where, cell in summary.cells.items() if cell.status == "fail"]
+    own = {
+        name: sorted({s for s, c in failing if c.label in labels})
+        for name, labels in engines.items()
+    }
+    names = list(own)
+    first = own[names[0]]
     if all(found == first for found in own.values()):
         total = times(len(summary.scenarios), "scenario")
         where = listed(first) if len(first) <= _FEW else f"{len(first)} of {total}"
-        return f"{listed(engines)}, on {where}"
-    if len(engines) > _FEW or any(len(found) > _FEW for found in own.values()):
-        return listed(engines)
+        return f"{listed(names)}, on {where}"
+    if len(names) > _FEW or any(len(found) > _FEW for found in own.values()):
+        return listed(names)
     return listed([f"{name} (on {listed(found)})" for name, found in own.items()])
 
 
@@ -153,10 +161,10 @@ def which_step(summary: Summary) -> str:
 
 
 def _spread(summary: Summary) -> str:
-    engines = _judged_engines(summary)
-    failing = {name for name, cells in engines.items() if any(c.status == "fail" for c in cells)}
-    sound = [cells for name, cells in engines.items() if name not in failing]
-    measured = sound or list(engines.values())
+    engines = judged_engines(summary)
+    failing = engines.failing
+    sound = [cells for name, cells in engines.cells.items() if name not in failing]
+    measured = sound or list(engines.cells.values())
     ranges = [cell.attitude for cells in measured for cell in cells if cell.attitude]
     if not ranges:
         return ""

@@ -8,8 +8,8 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.shipped import table as shipped_table
 from omegadot.reports.shipped.rows import shipped_rows
+from omegadot.reports.shipped.sentence import in_one_sentence
 from omegadot.reports.summary.cluster_sentences import extent, sentence
 from omegadot.reports.summary.clusters import clusters_over_scenarios
 from omegadot.reports.summary.engine_failure import EngineFailure
@@ -57,7 +57,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(f"{sentence(cluster)} {extent(cluster)}"))
     for missing in summary.missing:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
-    if shipped := shipped_table.line(shipped_rows(record)):
+    if shipped := in_one_sentence(shipped_rows(record)):
         console.print(Text(shipped))
     console.print(Text("; ".join(counts(summary)) or "No run was made."))
     console.print(Text(headline(summary), style="bold"))

@@ -32,7 +32,7 @@ function offer(scenario) {
 function tabulate(scenario) {
   const heads = [...element("view-table").tHead.rows[0].cells].slice(1).map((cell) => cell.textContent);
   const rows = scenario.runs.map(([line, , knob, , , , diverges, largest, end, , flips, turns]) => {
-    const turned = flipsText({ flips, turns, end }, scenario.flips, end).replace(" flips", "") || "–";
+    const turned = flipsText({ flips, turns, end }, scenario.flips, end) || "–";
     const cells = [knob, diverges === null ? "does not" : seconds(diverges), exactly(largest), seconds(end), turned];
     const head = made("th", { scope: "row", textContent: loaded.data.lines[line].name });
     const row = made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));

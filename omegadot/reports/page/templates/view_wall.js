@@ -21,8 +21,9 @@ function everyEngine(scenario, lines, rank, least) {
 function flipsText({ flips, turns, end }, exactFlips, time) {
   if (!exactFlips.length || !flips) return "";
   if (turns === "never") return "never flips";
-  const past = flips.filter((one) => one <= time).length, off = time >= end && (turns === "late" || turns === "early") ? `, ${turns}` : "";
-  return past > exactFlips.length ? `${past} flips for ${exactFlips.length}${off}` : `${past} of ${exactFlips.length} flips${off}`;
+  const past = flips.filter((one) => one <= time).length, off = time >= end && (turns === "late" || turns === "early") ? `flips ${turns}: ` : "";
+  const count = `${past} ${past > exactFlips.length ? "for" : "of"} ${exactFlips.length}`;
+  return off ? off + count : `${count} flips`;
 }
 
 // others: integrators of the same engine of which a gate fails while the one shown passes.

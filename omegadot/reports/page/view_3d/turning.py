@@ -9,7 +9,7 @@ import polars as pl
 from omegadot.reference_impl.system import Array, System
 from omegadot.reports.charts.packing import rounded
 from omegadot.reports.page.view_3d.opening import Key
-from omegadot.reports.summary.flips import Flips, flips_of, turned_over
+from omegadot.reports.summary.flips import Flipping, Flips, flips_of, turned_over
 
 _RUN = ("engine", "setup", "integrator", "timestep", "accuracy")
 _OMEGA = ("wx", "wy", "wz")
@@ -23,7 +23,7 @@ class Turning:
     """
 
     exact: list[float | None] = field(default_factory=list)
-    runs: dict[Key, tuple[list[float | None], str | None]] = field(default_factory=dict)
+    runs: dict[Key, tuple[list[float | None], Flipping | None]] = field(default_factory=dict)
 
 
 def turning_of(rows: pl.DataFrame, system: System, truth: str) -> Turning:
@@ -40,7 +40,7 @@ def turning_of(rows: pl.DataFrame, system: System, truth: str) -> Turning:
     for key, own in others.partition_by(_RUN, as_dict=True).items():
         flips = flips_of(*_motion(own), system)
         assert flips is not None  # the exact motion has an axis, and it is the system's
-        found[key] = (_times(flips), turned_over(flips, exact))
+        found[key] = (_times(flips), turned_over(flips.times, flips.until, exact))
     return Turning(_times(exact), found)
 
 
@@ -51,4 +51,4 @@ def _motion(rows: pl.DataFrame) -> tuple[Array, Array]:
 
 
 def _times(flips: Flips) -> list[float | None]:
-    return [rounded(flip.time, 5) for flip in flips.flips]
+    return [rounded(time, 5) for time in flips.times]
