@@ -103,7 +103,7 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("command", commands())
 def test_commands_run(command: str, workplace: Path) -> None:
     for name in filter(is_absent, OPTIONAL):
-        if re.search(rf"\b{name}\b", command):
+        if re.search(rf"(?<![a-z0-9]){name}(?![a-z0-9])", command):  # test_NAME.py as well
             pytest.skip(f"{name} is not installed")
     run_line(command, workplace)
 
