@@ -18,13 +18,19 @@ class UsageError(ValueError):
     """Arguments that cannot be used; the message is one sentence."""
 
 
+MOST_NAMES = 30  # in one sentence
+
+
 def nearest(term: str, known: Iterable[str]) -> str:
-    """Advice: the nearest valid name, or, where none is near, all of them."""
+    """Advice: the nearest valid name, or, where none is near, all of them, or many."""
     names = sorted(set(known))
     by_lower = {name.lower(): name for name in names}
     close = difflib.get_close_matches(term.lower(), by_lower, 1)
     if close:
         return f"write {by_lower[close[0]]}"
+    if len(names) > MOST_NAMES:
+        listed = ", ".join(names[:MOST_NAMES])
+        return f"choose {listed} or one of {len(names) - MOST_NAMES} others"
     *first, last = names
     return f"choose {', '.join(first)} or {last}" if first else f"choose {last}"
 

@@ -200,7 +200,9 @@ def test_midpoint_runs_backwards(on: System, state: State) -> None:
 def test_a_steady_spin_is_exact_in_attitude_where_it_can_be(name: str) -> None:
     on = system([1.0, 2.0, 2.5])
     end = run(name, on, start([0.0, 3.0, 0.0]), 0.05)
-    assert np.array_equal(end.angular_velocity, [0.0, 3.0, 0.0])
+    # three angles carry omega by a matrix of sines and cosines
+    allowed = STEPS * 3.0 * EPS if name.endswith("-roll-pitch-yaw") else 0.0
+    assert np.max(np.abs(end.angular_velocity - [0.0, 3.0, 0.0])) <= allowed
     turned = attitude_angle(end.orientation, exp_quaternion(np.array([0.0, 0.75, 0.0])))
     turn = 3.0 * 0.05
     # Cayley turns by 2 atan(x/2) in place of x, RK4 on the quaternion errs by (x/2)^5/120 in half

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -15,7 +15,7 @@ from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import SchemeKey
 from omegadot.harness.judging.judged_run import is_finite
 from omegadot.reference_impl.coordinates import Coordinates, distinct
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import COMMON, SCHEMES, Scheme
 from omegadot.reference_impl.solutions.companion import CompanionRun, Steps, companion
 from omegadot.reference_impl.system import State
 
@@ -49,12 +49,12 @@ class Match:
         return SchemeKey(self.scheme, self.coordinates)
 
 
-def keys_of(probe: Probe) -> list[SchemeKey]:
-    """Every reference scheme in all coordinates in which it is another computation."""
+def _keys_of(probe: Probe, schemes: Mapping[str, Scheme]) -> list[SchemeKey]:
+    """The schemes in all coordinates in which each is another computation."""
     ways = distinct(probe.system)
     return [
         SchemeKey(name, way)
-        for name, scheme in SCHEMES.items()
+        for name, scheme in schemes.items()
         for way in ways
         if way in scheme.coordinates
     ]
@@ -107,11 +107,18 @@ def _measured_runs(probe: Probe, step: Stepper, lanes: Lanes) -> list[State]:
 def fingerprint(probe: Probe, step: Stepper) -> list[Match]:
     """The schemes that `step` equals on a probe, the simplest first; none where it is unknown.
 
-    Every reference scheme is stepped at the same three step sizes; those that agree to round-off
-    are followed over a longer run. Raises NoAnswerError.
+    The reference's schemes are stepped at the same three step sizes, those on charts of one engine
+    where no common one agrees to round-off. What agrees is followed over a longer run. Raises
+    NoAnswerError.
     """
     measured_runs = _measured_runs(probe, step, WEEDING)
-    left = [key for key in keys_of(probe) if _compare(probe, key, WEEDING, measured_runs)[1] <= 1.0]
+
+    def agreeing(schemes: Mapping[str, Scheme]) -> list[SchemeKey]:
+        keys = _keys_of(probe, schemes)
+        return [key for key in keys if _compare(probe, key, WEEDING, measured_runs)[1] <= 1.0]
+
+    others = {name: one for name, one in SCHEMES.items() if name not in COMMON}
+    left = agreeing(COMMON) or agreeing(others)
     if not left:
         return []
     longer, found = _measured_runs(probe, step, FOLLOWING), []
