@@ -154,6 +154,25 @@ def test_a_limit_on_what_is_set_is_one_law_of_all_scenarios() -> None:
     assert {one for texts in found for one in texts} == {text}
 
 
+@pytest.mark.parametrize(
+    ("number", "texts"),
+    [(0.597571, []), (2.5, ["omega is scaled by 2.5"])],
+)
+def test_a_factor_of_one_state_alone_has_few_digits(number: float, texts: list[str]) -> None:
+    """Caught: "omega is scaled by 0.59757", where 79 rad/s were cut to 47.1 on one scenario."""
+
+    def scaled(case: Case, state: State) -> State:
+        less = replace(state, angular_velocity=number * state.angular_velocity)
+        return place_on_pivot(case.system, less)
+
+    (found,) = causes(scaled, FREE[:1])
+    assert [text for text in found if "is scaled" in text] == found[: len(texts)]
+    assert all(text.startswith(due) for text, due in zip(found, texts, strict=True))
+    on_all = {text for own in causes(scaled, FREE) for text in own}
+    assert len(on_all) == 1
+    assert next(iter(on_all)).startswith("omega is scaled by")
+
+
 def test_numbers_that_are_others_on_each_scenario_name_nothing() -> None:
     """Caught: a factor of one state, stated of all."""
 

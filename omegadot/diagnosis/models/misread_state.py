@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import comb
@@ -41,6 +42,10 @@ LAWS = {
     "linear_velocity": ("the linear velocity", "m/s"),
     "position": ("the position", "m"),
 }
+
+
+SCALED = re.compile(r"is scaled by (?P<number>[-+.\de]+)(?P<known> \()?")
+PLAIN_DIGITS, FEWEST_SCALED = 3, 2
 
 
 @dataclass(frozen=True)
@@ -94,7 +99,7 @@ def state_causes(
     if law:
         return [law]
     for way in fitted_misreadings(back, requested, together=False):
-        if not here.fails(_undone(here, way)):
+        if not _is_chance(way, every) and not here.fails(_undone(here, way)):
             fits = [not one.fails(_undone(one, way)) for one in every]
             found = _where(way.statement, every, fits)
             if found:
@@ -108,6 +113,15 @@ def state_causes(
         return ["the state is kept in single precision"]
     unknown = _unknown_map(across, every) if _is_omega(here) else ""
     return [unknown] if unknown else []
+
+
+def _is_chance(way: Misreading, every: Sequence[_Round]) -> bool:
+    """Whether it is a factor of many digits that one state alone shows: a limit makes one too."""
+    scaled = SCALED.search(way.statement)
+    if scaled is None or scaled["known"]:
+        return False
+    digits = len(scaled["number"].partition("e")[0].replace(".", "").strip("-0"))
+    return digits > PLAIN_DIGITS and sum(one.fails(one.back) for one in every) < FEWEST_SCALED
 
 
 def _is_omega(one: _Round) -> bool:
