@@ -32,8 +32,7 @@ from omegadot.diagnosis.stepping.vanishing.kinematics import (
 )
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
-from omegadot.diagnosis.wording.features import surely_in_common
-from omegadot.diagnosis.wording.implied import only_where
+from omegadot.diagnosis.wording.features import surely_only_where
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -52,7 +51,6 @@ from omegadot.harness.judging.judged_run import JudgedRun
 # than what is seen of a run: stepping again by all that may be wrong takes long. The order that
 # steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
-MOST_CONDITIONS = 2
 LOGGED = "the run is logged"
 AFTER_STEP = f"{IN_SINGLE} after each step"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
@@ -318,9 +316,6 @@ class IntegratorCauses:
             every = ((scene, scene.evidence.get(self._kept.source)) for scene in scenes.values())
             against = [s.features for s, e in every if e is not None and is_refuted(text, e)]
             shown = [scenes[name].features for name, own in known.items() if text in own]
-            common = surely_in_common(shown, against) if against else []
-            if not against:
-                found.append(text)
-            elif 0 < len(common) <= MOST_CONDITIONS:
-                found.append(text + only_where(text, " or where ".join(common)))
+            left = surely_only_where(text, shown, against) if against else text
+            found += [left] if left else []
         return found

@@ -6,7 +6,7 @@ from wrong_equations import BODY_TORQUE, CASES, case
 
 from omegadot.diagnosis.equations.evidence import Evidence, of_forward_dynamics
 from omegadot.diagnosis.stepping.other_equations import is_refuted
-from omegadot.diagnosis.wording.features import Features, in_common, surely_in_common
+from omegadot.diagnosis.wording.features import Features, in_common, surely_only_where
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.reference_impl.motion import forward_dynamics
@@ -38,5 +38,6 @@ def _some(count: int, pivoted: bool) -> list[Features]:
 def test_few_scenarios_have_nothing_in_common_for_sure() -> None:
     """Caught: "but only where the moments are equal", of one scenario in eight that shows it."""
     assert in_common(_some(1, True), _some(7, False)) == ["the body is pivoted"]
-    assert surely_in_common(_some(1, True), _some(7, False)) == []
-    assert surely_in_common(_some(9, True), _some(9, False)) == ["the body is pivoted"]
+    assert surely_only_where("the torque is missing", _some(1, True), _some(7, False)) is None
+    found = surely_only_where("the torque is missing", _some(9, True), _some(9, False))
+    assert found == "the torque is missing, but only where the body is pivoted"

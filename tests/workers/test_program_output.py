@@ -1,4 +1,4 @@
-"""A program that leaves, stops in an answer, writes too much or never flushes is told so."""
+"""Reports of a program that leaves, stops in an answer, writes too much, or never flushes."""
 
 import sys
 from pathlib import Path

@@ -12,8 +12,7 @@ from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.equations.hypotheses.unsymmetric import of_whole
 from omegadot.diagnosis.equations.wrong_torque import fitting_torques, plainest, would_show
-from omegadot.diagnosis.wording.features import Features, surely_in_common
-from omegadot.diagnosis.wording.implied import only_where
+from omegadot.diagnosis.wording.features import Features, surely_only_where
 from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -23,7 +22,6 @@ from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, System
 
-MOST_CONDITIONS = 2
 SOLVED, MULTIPLIED = "where omega-dot is solved for", "where it multiplies omega-dot"
 
 
@@ -57,7 +55,7 @@ class WrongInverse:
         against = {text: self._against(text) for text in found}
         # what no sound scenario is against comes first
         found = [text for text in found if not against[text]] or [
-            text + self._where(text, against[text]) for text in found
+            self._where(text, against[text]) for text in found
         ]
         return either(found) if len(found) <= MOST_NAMED else []
 
@@ -71,13 +69,11 @@ class WrongInverse:
         ]
 
     def _where(self, text: str, against: Sequence[str]) -> str:
-        """On which scenarios alone it is so, if that is known."""
+        """A cause with the scenarios on which alone it is so, or how many do not show it."""
         shown = [self._features[name] for name in self._evidence if text in self._of(name)]
-        common = surely_in_common(shown, [self._features[name] for name in against])
-        if 0 < len(common) <= MOST_CONDITIONS:
-            return only_where(text, " or where ".join(common))
+        found = surely_only_where(text, shown, [self._features[name] for name in against])
         others = "other" if len(against) == 1 else "others"
-        return f", not on {len(against)} {others} that would show it"
+        return found or f"{text}, not on {len(against)} {others} that would show it"
 
     def _of(self, name: str) -> list[str]:
         if name not in self._fits:

@@ -10,6 +10,7 @@ import numpy as np
 
 from omegadot.diagnosis.wording.decided import decided
 from omegadot.diagnosis.wording.digits import limits
+from omegadot.diagnosis.wording.implied import only_where
 from omegadot.diagnosis.wording.inertia_features import (
     EQUAL,
     OfInertia,
@@ -23,6 +24,7 @@ from omegadot.reference_impl.system import State, System
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them. A kind is
 # likely by itself; of a size the limit may lie anywhere, and every size is tried from both sides.
 SORTED_BY_KIND, ODDS = 6, 20
+MOST_CONDITIONS = 2  # in one sentence
 COMPONENT = "has no"  # of a vector
 FOLLOWS = {
     "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
@@ -145,10 +147,18 @@ def ways_of(scenarios: Sequence[Features]) -> int:
     return ODDS * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
 
 
-def surely_in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
-    """As `in_common`, where no experiment can refute what is chance: of many scenarios alone."""
+def surely_only_where(
+    text: str, shown: Sequence[Features], others: Sequence[Features]
+) -> str | None:
+    """A cause with the scenarios on which alone it is so; None where that is not known.
+
+    As `in_common`, where no experiment can refute what is chance: of many scenarios alone.
+    """
     ways = comb(len(shown) + len(others), len(shown))
-    return in_common(shown, others) if ways >= ways_of(shown) > 0 else []
+    common = in_common(shown, others) if ways >= ways_of(shown) > 0 else []
+    if not 0 < len(common) <= MOST_CONDITIONS:
+        return None
+    return text + only_where(text, " or where ".join(common))
 
 
 def in_common(

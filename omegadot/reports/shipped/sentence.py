@@ -17,13 +17,13 @@ def in_one_sentence(rows: tuple[ShippedRow, ...]) -> str:
     if not rows:
         return ""
     engines = [list(own) for _, own in groupby(rows, lambda row: row.engine)]
-    told = f"{TITLE}, on {rows[0].scenario}"
+    text = f"{TITLE}, on {rows[0].scenario}"
     if rows[0].exact_flips:
         shipped, physics = (_counted(engines, setup) for setup in ("as_shipped", "physics"))
         number = times(len(engines), "engine")
-        told += f": of {number}, by the worst integrator, {shipped}; set up for physics {physics}"
+        text += f": of {number}, by the worst integrator, {shipped}; set up for physics {physics}"
     mended = "; ".join(filter(None, map(_mended, engines)))
-    return f"{told}. What mends most: {mended or 'no single setting'}."
+    return f"{text}. What mends most: {mended or 'no single setting'}."
 
 
 def _counted(engines: list[list[ShippedRow]], setup: str) -> str:
@@ -32,13 +32,13 @@ def _counted(engines: list[list[ShippedRow]], setup: str) -> str:
     for own in engines:
         found = {row.flipping(getattr(row, setup)) for row in own}
         worst[next(verdict for verdict in _WORST if verdict in found)] += 1
-    told = [
+    counts = [
         f"{worst[verdict]} {words if worst[verdict] == 1 else words.replace('flips', 'flip')}"
         for verdict, words in WORDS.items()
         if worst[verdict]
     ]
-    told += [f"{worst[None]} without an answer"] if worst[None] else []
-    return listed(told)
+    counts += [f"{worst[None]} without an answer"] if worst[None] else []
+    return listed(counts)
 
 
 def _mended(rows: list[ShippedRow]) -> str:

@@ -82,8 +82,8 @@ def mends(row: ShippedRow) -> str:
     if most:
         name, ratio = most
         flips = row.flipping(row.settings[name])
-        told = f", {WORDS[flips]}" if flips else ""
-        return f"{name}: error × {short(ratio)}{told}"
+        flipping = f", {WORDS[flips]}" if flips else ""
+        return f"{name}: error × {short(ratio)}{flipping}"
     if row.alike:
         return ALIKE
     return f"none of {len(row.settings)}" if row.settings else "–"

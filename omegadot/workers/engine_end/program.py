@@ -46,7 +46,7 @@ def end_with_parent() -> bool:
 class Program:
     """A program that answers one request after another.
 
-    command: as it is typed, ``node worker.js``.  waiting: is told what is wrong if the first
+    command: as it is typed, ``node worker.js``.  waiting: takes what is wrong if the first
     request is never answered, once it has been written.
     """
 

@@ -87,8 +87,8 @@ function run() {
     last = now;
     show.time = Math.min(exact.end, show.time + Number(element("view-speed").value) * passed);
     const over = show.shown.filter(({ trajectory }) => trajectory.diverges > before && trajectory.diverges <= show.time);
-    const told = over.map(({ trajectory }) => `${trajectory.name} ${divergenceOf(trajectory)}.`);
-    for (const text of show.all && told.length ? [told.join(" ")] : told) announce(text); // many at once are one message
+    const messages = over.map(({ trajectory }) => `${trajectory.name} ${divergenceOf(trajectory)}.`);
+    for (const text of show.all && messages.length ? [messages.join(" ")] : messages) announce(text); // many at once are one message
     if (show.time >= exact.end) {
       waiting = false;
       play(false);
