@@ -159,6 +159,7 @@ def test_the_quantities_that_limits_are_about() -> None:
         ("{ moment_product_below = 1 }", "write moments_product_below"),
         ("{ speed_below = 'slow' }", "speed_below is 'slow'; give a number in SI units"),
         ("{ speed_below = nan }", "give a number in SI units"),
+        (f"{{ speed_below = {'9' * 400} }}", "give a number in SI units"),
         ("{}", "give it as a table of limits"),
         ("7", "when is 7; give it as a table of limits"),
     ],
@@ -169,6 +170,14 @@ def test_limits_that_cannot_be_read(tmp_path: Path, when: str, message: str) -> 
     with pytest.raises(UsageError, match=re.escape(message)) as raised:
         read_exceptions(file)
     assert str(raised.value).startswith(f"{file}: exception 1: when")
+
+
+@pytest.mark.parametrize("entry", ["1", "true", "[]", '"ab"'])
+def test_an_exception_that_is_no_table_is_refused(tmp_path: Path, entry: str) -> None:
+    file = tmp_path / "known.toml"
+    file.write_text(f'engine = "toy"\nexception = [{entry}]\n')
+    with pytest.raises(UsageError, match="exception 1 is .*write it as a table"):
+        read_exceptions(file)
 
 
 def test_they_stand_next_to_an_adapter(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -63,8 +64,9 @@ def read_conditions(table: object, where: str) -> tuple[Condition, ...]:
         if key not in KEYS:
             raise UsageError(f"{where}: when: unknown key {key!r}; {nearest(key, KEYS)}.")
         number = isinstance(limit, int | float) and not isinstance(limit, bool)
-        if not number or not math.isfinite(limit):
-            raise UsageError(f"{where}: when: {key} is {limit!r}; give a number in SI units.")
+        if not number or not abs(limit) <= sys.float_info.max:
+            shown = repr(limit)[:40]
+            raise UsageError(f"{where}: when: {key} is {shown}; give a number in SI units.")
         found.append(Condition(key, float(limit)))
     return tuple(found)
 

@@ -81,6 +81,8 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
     found = []
     for number, entry in enumerate(entries, 1):
         where = f"{path}: exception {number}"
+        if not isinstance(entry, dict):
+            raise UsageError(f"{where} is {entry!r}; write it as a table, [[exception]].")
         _refuse_unknown(entry, (*KEYS, "when"), where)
         for key in KEYS:
             if not isinstance(entry.get(key), str) or not entry[key].strip():
