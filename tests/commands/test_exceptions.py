@@ -176,7 +176,7 @@ def test_limits_that_cannot_be_read(tmp_path: Path, when: str, message: str) -> 
 def test_an_exception_that_is_no_table_is_refused(tmp_path: Path, entry: str) -> None:
     file = tmp_path / "known.toml"
     file.write_text(f'engine = "toy"\nexception = [{entry}]\n')
-    with pytest.raises(UsageError, match="exception 1 is .*write it as a table"):
+    with pytest.raises(UsageError, match=r"exception 1 is .*write it as a table"):
         read_exceptions(file)
 
 
