@@ -23,6 +23,8 @@ _SHORTENED = " ..."
 
 
 def _pack(value: Any, arrays: list[Array]) -> Any:
+    if value is None or type(value) in (str, int, bool):  # most of a description
+        return value
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
             raise TypeError(f"an array of {value.dtype.name} cannot be sent; give real numbers")
@@ -94,6 +96,8 @@ def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
     Control characters, escape codes' first bytes and lone surrogates become spaces, so that the
     line can be written as UTF-8 and shown anywhere.
     """
+    if len(text) <= most and text.isprintable() and text == " ".join(text.split()):
+        return text
     start = text[: 8 * most]  # a message may be megabytes long
     line = " ".join("".join(c if c.isprintable() else " " for c in start).split())
     if len(line) <= most and len(start) == len(text):
