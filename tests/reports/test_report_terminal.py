@@ -88,3 +88,22 @@ def test_an_empty_record_is_reported_as_such(record):
     run = {**record.run, "tasks": [], "scenarios": [], "engines": []}
     text = printed(replace(record, run=run, metrics=record.metrics.clear()), 80)
     assert "No run was made." in text
+
+
+@pytest.mark.parametrize("width", [90, 160])
+def test_many_engines_have_a_row_each_and_share_a_reason(width):
+    """A column each would be cut off; a reason of many engines would be as many lines."""
+    many = {f"engine-{letter}": INTEGRATORS["mujoco"] for letter in "abcdefghij"}
+    record = build(NAMES, engines=many)
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    for task in tasks:
+        if task["engine"] in ("engine-b", "engine-d") and task["scenario"] == "sphere":
+            reason = f"{task['engine']} has no such bodies"
+            task.update(outcome="unsupported", reason=reason, gates={})
+    text = printed(replace(record, run={**record.run, "tasks": tasks}), width)
+    assert max(map(len, text.splitlines())) <= width
+    assert row(text, "engine-a").split()[1:3] == ["2", "6e-15"]
+    assert row(text, "engine-b").split()[1:3] == ["1", "1"]
+    lines = " ".join(text.split())
+    shared = "engine-b and engine-d: unsupported, 6 runs each on sphere: the engine has no such"
+    assert lines.count(shared) == lines.count("has no such bodies") == 1

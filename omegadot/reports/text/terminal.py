@@ -14,10 +14,17 @@ from omegadot.reports.summary.cluster_sentences import extent, sentence
 from omegadot.reports.summary.clusters import clusters_over_scenarios
 from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate
-from omegadot.reports.summary.figures import Figure, size
+from omegadot.reports.summary.figures import Figure
 from omegadot.reports.summary.headline import headline, remarks, truth, which_step
-from omegadot.reports.summary.summary import Cell, Missing, Summary, counts, summarise
-from omegadot.reports.text.numbers import angle, first, short, times
+from omegadot.reports.summary.summary import Cell, Summary, counts, summarise
+from omegadot.reports.text.engine_rows import (
+    MOST_COLUMNS,
+    engine_rows,
+    explained,
+    missing_lines,
+    widest,
+)
+from omegadot.reports.text.numbers import angle, short
 from omegadot.reports.text.text_grid import plain_console
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
@@ -47,16 +54,20 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     """
     console = console or plain_console(_WIDTH_WHEN_PIPED)
     summary = summarise(record)
-    shown, table = _fitting_table(summary, console)
-    if summary.columns:
-        console.print(table)
-        console.print(_legend(summary, shown, console), style="dim")
-    for line in _extremes(summary):
-        console.print(Text(line))
+    if len(summary.columns) > MOST_COLUMNS:
+        console.print(engine_rows(summary, _signs(console), _STYLES))
+        console.print(f"{_present(summary, console)}{explained(summary)}", style="dim")
+    else:
+        shown, table = _fitting_table(summary, console)
+        if summary.columns:
+            console.print(table)
+            console.print(_legend(summary, shown, console), style="dim")
+        for line in _extremes(summary):
+            console.print(Text(line))
     for cluster in clusters_over_scenarios(record.run)[:1]:  # the largest; the page names all
         console.print(Text(f"{sentence(cluster)} {extent(cluster)}"))
-    for missing in summary.missing:
-        console.print(Text(_missing_line(missing), style=_NOT_RUN))
+    for line in missing_lines(summary.missing):
+        console.print(Text(line, style=_NOT_RUN))
     if shipped := in_one_sentence(shipped_rows(record)):
         console.print(Text(shipped))
     console.print(Text("; ".join(counts(summary)) or "No run was made."))
@@ -142,11 +153,16 @@ def _is_wide(console: Console) -> bool:
     return console.encoding.startswith("utf")
 
 
-def _mark(cell: Cell, console: Console) -> str:
-    """A sign for what was judged, the outcome for what did not run, with how many runs passed."""
+def _signs(console: Console) -> dict[str, str]:
+    """The signs of what was judged."""
     wide = _is_wide(console)
     signs = {"pass": "✓" if wide else "ok", "fail": "✗" if wide else "FAIL"}
-    signs |= {"declared": "!", "absent": "-"}
+    return signs | {"declared": "!", "absent": "-"}
+
+
+def _mark(cell: Cell, console: Console) -> str:
+    """A sign for what was judged, the outcome for what did not run, with how many runs passed."""
+    signs = _signs(console)
     if cell.status in signs:
         return signs[cell.status]
     passed, total = cell.runs["pass"], sum(cell.runs.values())
@@ -162,28 +178,31 @@ def _terse(cell: Cell) -> list[str]:
     return ["-" if f is None else short(f.value, 1).replace("not finite", "nan") for f in figures]
 
 
-def _legend(summary: Summary, shown: int, console: Console) -> str:
+def _present(summary: Summary, console: Console) -> str:
+    """The signs that stand in the table, each with what it stands for."""
     present = {cell.status: _mark(cell, console) for cell in summary.cells.values()}
     message = [f"{present[status]} {text}" for status, text in _SIGNS.items() if status in present]
-    sentences = ["; ".join(message) + "."] if message else []
+    return "; ".join(message) + ". " if message else ""
+
+
+def _legend(summary: Summary, shown: int, console: Console) -> str:
+    sentences = [_present(summary, console).strip()]
     sentences += [text for _, text in _NUMBERS[:shown]]
     if shown > 1:
         names = " and ".join(name for name, _ in _NUMBERS[1:shown])
         sentences.append(f"{names}: of the worst integrator, {which_step(summary)}.")
         sentences.append("An error that the declared scheme explains passes, whatever its size.")
-    return " ".join(sentences)
+    return " ".join(filter(None, sentences))
 
 
 def _extremes(summary: Summary) -> list[str]:
     """Per engine: its worst attitude error, and that of its best integrator on that scenario."""
     lines = []
     for column in summary.columns:
-        cells = [summary.cells[scenario, column] for scenario in summary.scenarios]
-        ranges = [cell.attitude for cell in cells if cell.attitude is not None]
-        if not ranges:
+        found = widest(summary, column)
+        if found is None:
             continue
-        widest = max(ranges, key=lambda r: size(r.worst))
-        worst, best = widest.worst, widest.best
+        worst, best = found.worst, found.best
         span = _named(worst) if best is worst else f"{_named(best)} to {_named(worst)}"
         lines.append(
             f"{column.label}: attitude error {span} on {worst.scenario}, {which_step(summary)}."
@@ -194,10 +213,3 @@ def _extremes(summary: Summary) -> list[str]:
 def _named(figure: Figure) -> str:
     source = f" ({figure.integrator})" if figure.integrator else ""
     return f"{angle(figure.value)}{source}"
-
-
-def _missing_line(missing: Missing) -> str:
-    line = f"{missing.engine}: {missing.status}"
-    if missing.runs:
-        line += f", {times(missing.runs, 'run')} on {first(missing.scenarios, 4)}"
-    return line + (f": {missing.reason}" if missing.reason else "")
