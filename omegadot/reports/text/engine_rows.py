@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
+from rich.console import JustifyMethod
 from rich.table import Table
 from rich.text import Text
 
@@ -24,23 +25,29 @@ def engine_rows(summary: Summary, signs: Mapping[str, str], styles: Mapping[str,
 
     signs, styles: of a status; one that has no sign is written out.
     """
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    table.add_column("engine", no_wrap=True)
     present = _statuses(summary)
-    for status in present:
-        heading = Text(signs.get(status, status), styles.get(status, ""))
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("omega-dot", no_wrap=True)
-    table.add_column("attitude in deg", no_wrap=True)
-    table.add_column("on", no_wrap=True, overflow="ellipsis")
+    heads = [Text(signs.get(status, status), styles.get(status, "")) for status in present]
+    rows = []
     for column in summary.columns:
         counts = Counter(summary.cells[scenario, column].status for scenario in summary.scenarios)
         numbers = [
             Text(str(counts[status] or ""), styles.get(status, "") if status != "pass" else "")
             for status in present
         ]
-        figures = (_residual(summary, column), *_attitude(summary, column))
-        table.add_row(column.label, *numbers, *figures)
+        figures = map(Text, (_residual(summary, column), *_attitude(summary, column)))
+        rows.append([Text(column.label), *numbers, *figures])
+    headings = [Text("engine"), *heads, Text("omega-dot"), Text("attitude in deg"), Text("on")]
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    for place, heading in enumerate(headings):
+        width = max(cells[place].cell_len for cells in [headings, *rows])
+        last = place == len(headings) - 1  # where space is short it gives way
+        justify: JustifyMethod = "right" if 0 < place <= len(present) else "left"
+        least = 4 if last else width
+        table.add_column(
+            heading, justify=justify, no_wrap=True, overflow="ellipsis", min_width=least
+        )
+    for cells in rows:
+        table.add_row(*cells)
     return table
 
 
