@@ -20,8 +20,10 @@ from omegadot.reports.text.numbers import degrees, first, listed, short, times
 MOST_COLUMNS = 8  # engines side by side, with their verdicts alone, in the narrowest usual terminal
 
 
-def engine_rows(summary: Summary, signs: Mapping[str, str], styles: Mapping[str, str]) -> Table:
-    """The table, an engine a row.
+def engine_rows(
+    summary: Summary, signs: Mapping[str, str], styles: Mapping[str, str], width: int
+) -> Table:
+    """The table, an engine a row, `width` characters wide.
 
     signs, styles: of a status; one that has no sign is written out.
     """
@@ -38,15 +40,14 @@ def engine_rows(summary: Summary, signs: Mapping[str, str], styles: Mapping[str,
         rows.append([Text(column.label), *numbers, *figures])
     headings = [Text("engine"), *heads, Text("omega-dot"), Text("attitude in deg"), Text("on")]
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    room = width
     for place, heading in enumerate(headings):
-        width = max(cells[place].cell_len for cells in [headings, *rows])
-        last = place == len(headings) - 1  # where space is short it gives way
         justify: JustifyMethod = "right" if 0 < place <= len(present) else "left"
-        least = 4 if last else width
-        table.add_column(
-            heading, justify=justify, no_wrap=True, overflow="ellipsis", min_width=least
-        )
+        table.add_column(heading, justify=justify, no_wrap=True)
+        if place < len(headings) - 1:
+            room -= 2 + max(cells[place].cell_len for cells in [headings, *rows])
     for cells in rows:
+        cells[-1].truncate(max(room - 2, 4), overflow="ellipsis")  # where space is short
         table.add_row(*cells)
     return table
 

@@ -55,7 +55,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     console = console or plain_console(_WIDTH_WHEN_PIPED)
     summary = summarise(record)
     if len(summary.columns) > MOST_COLUMNS:
-        console.print(engine_rows(summary, _signs(console), _STYLES))
+        console.print(engine_rows(summary, _signs(console), _STYLES, console.width))
         console.print(f"{_present(summary, console)}{explained(summary)}", style="dim")
     else:
         shown, table = _fitting_table(summary, console)
