@@ -18,6 +18,7 @@ from omegadot.reports.summary.summary import STATUSES, Column, Missing, Summary
 from omegadot.reports.text.numbers import degrees, first, listed, short, times
 
 MOST_COLUMNS = 8  # engines side by side, with their verdicts alone, in the narrowest usual terminal
+LEAST_TEXT = 10  # characters: less of a column says nothing
 
 
 def engine_rows(
@@ -39,16 +40,19 @@ def engine_rows(
         figures = map(Text, (_residual(summary, column), *_attitude(summary, column)))
         rows.append([Text(column.label), *numbers, *figures])
     headings = [Text("engine"), *heads, Text("omega-dot"), Text("attitude in deg"), Text("on")]
+    every = [headings, *rows]
+    widths = [2 + max(cell.cell_len for cell in cells) for cells in zip(*every, strict=True)]
+    shown = len(widths)
+    while sum(widths[: shown - 1]) + LEAST_TEXT > width and shown > 1 + len(present):
+        shown -= 1  # what is to the right gives way
+    room = width - sum(widths[: shown - 1])
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    room = width
-    for place, heading in enumerate(headings):
+    for place, heading in enumerate(headings[:shown]):
         justify: JustifyMethod = "right" if 0 < place <= len(present) else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
-        if place < len(headings) - 1:
-            room -= 2 + max(cells[place].cell_len for cells in [headings, *rows])
     for cells in rows:
-        cells[-1].truncate(max(room - 2, 4), overflow="ellipsis")  # where space is short
-        table.add_row(*cells)
+        cells[shown - 1].truncate(room - 2, overflow="ellipsis")
+        table.add_row(*cells[:shown])
     return table
 
 
