@@ -46,12 +46,13 @@ def engine_rows(
     while sum(widths[: shown - 1]) + LEAST_TEXT > width and shown > 1 + len(present):
         shown -= 1  # what is to the right gives way
     room = width - sum(widths[: shown - 1])
+    for cells in every:
+        cells[shown - 1].truncate(room - 2, overflow="ellipsis")
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for place, heading in enumerate(headings[:shown]):
         justify: JustifyMethod = "right" if 0 < place <= len(present) else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
     for cells in rows:
-        cells[shown - 1].truncate(room - 2, overflow="ellipsis")
         table.add_row(*cells[:shown])
     return table
 
