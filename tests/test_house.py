@@ -42,6 +42,7 @@ THIRD_PARTY = {
         "jax",
         "jaxsim",
         "idyntree",
+        "rapier3d",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }
