@@ -16,9 +16,8 @@ from omegadot.adapters.protocol import (
     Setup,
     Trajectory,
     UnsupportedError,
-    mends,
 )
-from omegadot.adapters.rapier3d.integrators import ITERATIONS, declared_integrators
+from omegadot.adapters.rapier3d.integrators import STEP, declared_integrators
 from omegadot.adapters.rapier3d.model import SETTINGS, SWITCHED_OFF, RapierModel
 from omegadot.adapters.rapier3d.stepping import omega_dot, run
 from omegadot.reference_impl.motion import center_of_mass_acceleration
@@ -66,7 +65,7 @@ class RapierAdapter(OneJointAdapter):
         return Description(
             name=self.name,
             version=version("rapier3d"),
-            integrators=declared_integrators(self._system, self._is_damped()),
+            integrators=declared_integrators(self._system),
             precision="float32",
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
@@ -75,11 +74,6 @@ class RapierAdapter(OneJointAdapter):
             licence="Apache-2.0",
             links=LINKS,
         )
-
-    def _is_damped(self) -> bool:
-        """Whether a joint keeps its damping, which is not the system's."""
-        damping = self._system is not None and self._system.load.damping
-        return not damping and not mends(self._setup, "set_damping")
 
     def _built(self, system: System, via: Format | Literal[""]) -> RapierModel:
         self._system = system
@@ -121,16 +115,16 @@ class RapierAdapter(OneJointAdapter):
     ) -> Trajectory:
         """`PhysicsWorld.step`, step by step.
 
-        Raises UnsupportedError for an integrator that the adapter has not.
+        Raises UnsupportedError for an integrator that Rapier has not.
         """
         loaded: RapierModel = self._loaded()
-        if integrator not in ITERATIONS:
+        if integrator != STEP:
             raise UnsupportedError(f"rapier3d has no integrator {integrator!r}.")
         kept = kept_steps(steps, every)
         # Nothing is left of an earlier run.
         self._joint = model = self._anew(loaded.system)
         if is_finite(initial):
-            rows, seconds = run(model, initial, ITERATIONS[integrator], timestep, kept)
+            rows, seconds = run(model, initial, timestep, kept)
             found = model.states(rows)
         else:
             found, seconds = lost(initial, len(kept)), 0.0

@@ -8,6 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
+from omegadot.adapters.rapier3d.integrators import ITERATIONS
 from omegadot.adapters.rapier3d.model import RapierModel, quaternion_of
 from omegadot.reference_impl.arithmetic.components import rotated
 from omegadot.reference_impl.system import Array, State
@@ -37,16 +38,14 @@ def push_of(model: RapierModel) -> Callable[[], object] | None:
     return push
 
 
-def run(
-    model: RapierModel, start: State, iterations: int, h: float, kept: list[int]
-) -> tuple[Array, float]:
+def run(model: RapierModel, start: State, h: float, kept: list[int]) -> tuple[Array, float]:
     """Rows of the samples at these steps, and the s that the steps took.
 
     A run that is no longer finite has NaN in its later rows: Rapier puts such a body back to where
     it was, and disables it.
     """
     parameters, step = model.world.integration_parameters, model.world.step
-    parameters.num_solver_iterations, parameters.dt = iterations, h
+    parameters.num_solver_iterations, parameters.dt = ITERATIONS, h
     model.set_state(start)
     push = push_of(model)
     rows = np.full((len(kept), 13), np.nan)
