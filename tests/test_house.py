@@ -43,6 +43,7 @@ THIRD_PARTY = {
         "jaxsim",
         "idyntree",
         "rapier3d",
+        "biorbd",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }
