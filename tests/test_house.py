@@ -42,6 +42,8 @@ THIRD_PARTY = {
         "jax",
         "jaxsim",
         "idyntree",
+        "rapier3d",
+        "biorbd",
     },
     "workers/engine_end": {"numpy", "scipy"},
 }

@@ -38,6 +38,8 @@ EXTRAS: dict[str, str] = {
     "jaxsim": "omegadot.adapters.jaxsim.adapter:JaxsimAdapter",
     "jaxsim-float32": "omegadot.adapters.jaxsim.adapter:JaxsimFloat32Adapter",
     "idyntree": "omegadot.adapters.idyntree.adapter:IDynTreeAdapter",
+    "rapier3d": "omegadot.adapters.rapier3d.adapter:RapierAdapter",
+    "biorbd": "omegadot.adapters.biorbd.adapter:BiorbdAdapter",
 }
 """Engines that an extra installs, by the name before a hyphen: ``pip install 'omegadot[mjx]'``."""
 NODE: dict[str, str] = {
@@ -57,6 +59,8 @@ _MODULES = {
     "mjx": ("jax", "mujoco.mjx"),
     "jaxsim": ("jax", "jaxsim"),
     "idyntree": ("idyntree",),
+    "rapier3d": ("rapier3d",),
+    "biorbd": ("biorbd",),
 }
 
 

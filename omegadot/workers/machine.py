@@ -18,7 +18,7 @@ import psutil
 RECORDED = (
     "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2",
     "mujoco", "pin", "dartpy", "drake", "exudyn", "bsk", "opensim", "pybullet", "sapien",
-    "mujoco-mjx", "jaxsim", "jax", "jaxlib", "idyntree"
+    "mujoco-mjx", "jaxsim", "jax", "jaxlib", "idyntree", "rapier3d", "biorbd"
 )  # fmt: skip
 
 # Of control groups, version 2 and 1. A container sees its own group as the root.

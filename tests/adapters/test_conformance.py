@@ -39,8 +39,9 @@ from omegadot.reference_impl.system import Acceleration, Array, Body, Load, Stat
 
 # Those in Python that take every load; tests/adapters/test_node.py has the same of those that run
 # through Node, test_basilisk.py, test_jaxsim.py and test_sapien.py of engines that take free bodies
-# alone, test_pybullet.py of one without omega-dot, test_mjx.py of MJX in single precision.
-APART = {"basilisk", "jaxsim", "jaxsim-float32", "mjx-float32", "pybullet", "sapien"}
+# alone, test_pybullet.py of one without omega-dot, test_mjx.py of MJX in single precision, and
+# test_rapier3d.py of one in single precision that has omega-dot of pivoted bodies alone.
+APART = {"basilisk", "jaxsim", "jaxsim-float32", "mjx-float32", "pybullet", "rapier3d", "sapien"}
 ENGINES = sorted(set(OURS) - set(NODE) - APART - set(filter(is_absent, OURS)))
 FEW = 64  # roundings in a row of about twenty operations on three components
 TENSORS = ("diagonal", "full", "flat_turned", "thin_turned")
@@ -133,6 +134,7 @@ PACKAGES = {
     "opensim": "opensim",
     "mjx": "jax",
     "idyntree": "idyntree",
+    "biorbd": "biorbd",
 }
 
 

@@ -19,7 +19,7 @@ def test_an_extra_is_looked_for_without_importing_it() -> None:
         "import sys; from omegadot.adapters.registry import EXTRAS, is_absent; "
         "absent = [is_absent(name) for name in EXTRAS]; "
         "engines = {'mujoco', 'jax', 'jaxsim', 'pydrake', 'exudyn', 'Basilisk', 'opensim'}; "
-        "engines |= {'pybullet', 'sapien', 'idyntree'}; "
+        "engines |= {'pybullet', 'sapien', 'idyntree', 'rapier3d', 'biorbd'}; "
         "sys.exit(bool(engines & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -20,7 +20,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State, System
 
-ENGINES = [name for name in ("pinocchio", "idyntree") if not is_absent(name)]
+ENGINES = [name for name in ("pinocchio", "idyntree", "biorbd") if not is_absent(name)]
 of_every_engine = pytest.mark.parametrize("name", ENGINES)
 
 

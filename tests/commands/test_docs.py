@@ -30,6 +30,8 @@ INSTALLING = (
     ".venv/bin/pip install -e '.[mjx]'",
     ".venv/bin/pip install -e '.[jaxsim]'",
     ".venv/bin/pip install -e '.[idyntree]'",
+    ".venv/bin/pip install -e '.[rapier3d]'",
+    ".venv/bin/pip install -e '.[biorbd]'",
     ".venv/bin/omegadot engines --install node",
 )
 

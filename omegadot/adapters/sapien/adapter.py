@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from omegadot.adapters.lost_run import is_finite, lost
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     Description,
@@ -95,21 +96,5 @@ class SapienAdapter(OneJointAdapter):
             rows, seconds = run(model, initial, timestep, kept)
             found = model.states(rows)
         else:
-            found, seconds = _lost(initial, len(kept)), 0.0
+            found, seconds = lost(initial, len(kept)), 0.0
         return Trajectory(np.array(kept) * timestep, found, seconds)
-
-
-def is_finite(state: State) -> bool:
-    """Whether a state is finite in single precision."""
-    with np.errstate(over="ignore"):
-        return all(np.all(np.isfinite(np.float32(part))) for part in vars(state).values())
-
-
-def _lost(initial: State, samples: int) -> State:
-    """A state that PhysX cannot take, and NaN after it."""
-    parts = []
-    for part in vars(initial).values():
-        rows = np.full((samples, len(part)), np.nan)
-        rows[0] = part
-        parts.append(rows)
-    return State(*parts)

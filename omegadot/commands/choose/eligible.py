@@ -28,6 +28,8 @@ PACKAGES = {
     "jaxsim": "jaxsim",
     "jaxsim-float32": "jaxsim",
     "idyntree": "idyntree",
+    "rapier3d": "rapier3d",
+    "biorbd": "biorbd",
 }
 # More than any minor version of Python has had.
 MOST_RELEASES = 40

@@ -1,0 +1,1 @@
+"""biorbd, which is RBDL with an interface to Python, behind the protocol."""

@@ -1,0 +1,1 @@
+"""Rapier, by its bindings for Python, behind the protocol."""
