@@ -98,7 +98,7 @@ def test_a_script_stands_alone(entry: Entry) -> None:
         ast.parse(body)
     assert entry.engine in OURS
     assert entry.scenario in builtin_names() or (ROOT / entry.scenario).is_file()
-    assert entry.timestep in api.scenario(_scenario(entry)).timesteps
+    assert entry.timestep in api.scenario(_scenario(entry)).run.timesteps
 
 
 def _scenario(entry: Entry) -> str:
