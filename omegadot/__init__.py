@@ -28,6 +28,8 @@ if TYPE_CHECKING:  # "as": it is exported
     from omegadot.commands.exact.exact import exact as exact
     from omegadot.commands.faults.faults import FaultsResult as FaultsResult
     from omegadot.commands.faults.faults import faults as faults
+    from omegadot.commands.findings.findings import FindingsResult as FindingsResult
+    from omegadot.commands.findings.findings import findings as findings
     from omegadot.commands.fit.fit import fit as fit
     from omegadot.commands.fit.result import FitResult as FitResult
     from omegadot.commands.progress import Progress as Progress
@@ -69,6 +71,7 @@ _PLACES = {
     "commands.engines.engines": ("EngineEntry", "engines"),
     "commands.exact.exact": ("ExactStates", "exact"),
     "commands.faults.faults": ("FaultsResult", "faults"),
+    "commands.findings.findings": ("FindingsResult", "findings"),
     "commands.fit.fit": ("fit",),
     "commands.fit.result": ("FitResult",),
     "commands.progress": ("Progress",),

@@ -16,6 +16,7 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
+from omegadot.commands.findings.command import findings
 from omegadot.commands.fit.command import fit
 from omegadot.commands.options import ENDED, INTERRUPTED, PlainHelp
 from omegadot.commands.report.command import report
@@ -55,6 +56,7 @@ for command, short_help in (
     (schemes, "Identify the scheme of every integrator by its steps."),
     (check, "Check one engine, built in or your own."),
     (faults, "Inject known faults and show which gate catches them."),
+    (findings, "List where engines diverge, each shown in two ways."),
     (choose, "Find engine, integrator and step for a requirement."),
     (report, "Draw the report of a stored run, or of two runs."),
     (score, "Score a trajectory or log of any simulator."),

@@ -51,7 +51,7 @@ def read_toml(path: Path, file: str) -> dict[str, Any]:
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ScenarioError(file, None, "UTF-16 text", "save it in UTF-8")
     try:
-        return _parse(content.decode("utf-8-sig"), file)
+        return parse_toml(content.decode("utf-8-sig"), file)
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         found = f"not UTF-8 text (byte 0x{content[error.start]:02x} in line {line})"
@@ -67,7 +67,8 @@ def _given_twice(found: re.Match[str]) -> str:
     return f"{key} is given as a value and again as a table"
 
 
-def _parse(text: str, file: str) -> dict[str, Any]:
+def parse_toml(text: str, file: str) -> dict[str, Any]:
+    """The tables of a TOML text. file: its name in errors. Raises ScenarioError."""
     try:
         if deep := _DEEP_KEY.search(text):
             line = text.count("\n", 0, deep.start()) + 1

@@ -25,12 +25,14 @@ BASE: dict[str, tuple[str, ...]] = {
     "choose": ("quick.toml", "--engine", "exact", "--attitude", "1deg", "--budget", "0.1"),
     "report": ("record",),
     "score": SCORE,
+    "findings": ("record", "--folder", "findings"),
     "fit": ("trace.csv", "--no-bias", "--no-damping"),
     "compare": ("record", "record"),
     "versions": (*VERSIONS, "--scenario", "quick.toml", "--integrator", "nowhere"),
 }
 # Arguments without a name, by the place that they have in BASE.
 PLACES = {"engine": 0, "trace": 0, "first": 0, "second": 1, "scenarios": 0, "runs": 0}
+PLACES |= {"records": 0}
 PLACES |= {"releases": 1}
 
 

@@ -45,6 +45,7 @@ BASE: dict[str, dict[str, Any]] = {
     "engines": {},
     "exact": {"scenario": "quick.toml"},
     "faults": {"engines": "nowhere"},
+    "findings": {"records": "record", "folder": "findings"},
     "fit": {"trace": "nowhere.csv"},
     "read_record": {"folder": "record"},
     "report": {"run": "record", "out": "page.html"},

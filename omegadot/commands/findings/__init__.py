@@ -1,0 +1,1 @@
+"""``omegadot findings``: where engines diverge, measured in a record and again by a bare script."""
