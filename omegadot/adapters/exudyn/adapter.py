@@ -20,6 +20,7 @@ from omegadot.adapters.exudyn.stepping import (
     run_fixed,
     settings_of,
 )
+from omegadot.adapters.exudyn.two_axes import run_in_two
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
@@ -39,7 +40,7 @@ CONVENTIONS = (
     "is about the node, and a step is taken in the node's coordinates",
     "the node NodeRigidBodyRotVecLG keeps a rotation vector, and omega in body axes as its rate; "
     "-EP is the node of Euler parameters, (w, x, y, z), of which the length is a constraint; -Rxyz "
-    "has three angles, R = Rx Ry Rz, and their rates",
+    "has three angles, R = Rx Ry Rz, and their rates, singular where the second is 90 degrees",
     "linear velocities are in world axes, of the node",
     "a pivot is three ObjectConnectorCoordinate, which hold the node's place; explicit solvers "
     "then take omega-dot of the body as if it were free, so that a pivot off the centre of mass is "
@@ -49,7 +50,8 @@ CONVENTIONS = (
     "inverse dynamics is M q'' - f, of the solver's mass matrix and right-hand side",
 )
 SWITCHED_OFF = (
-    "the body's axes as the node's: they are exchanged, as a turn near none loses half its digits",
+    "the body's axes as the node's: they are exchanged, as a turn near none loses half its digits; "
+    "those of a node of three angles are exchanged or not, whichever is far from its singularity",
     "relativeTolerance of error-controlled solvers, which scales the tolerance with coordinates "
     "and rates with their signs, so that it vanishes or grows where these are negative",
     "the tolerances of 1e-8 and 1e-10 of Newton's iterations: 1e-12",
@@ -91,15 +93,16 @@ class ExudynAdapter(OneJointAdapter):
 
     def _built(self, system: System, via: Format | Literal[""]) -> ExudynJoint:
         self._system = system
-        self._models: dict[Kind, ExudynModel] = {}
+        self._models: dict[tuple[Kind, Axes], ExudynModel] = {}
         undriven = ExudynModel(self._engine, system, "rotation-vector", self._axes, False)
         return ExudynJoint(self._engine, self._model("rotation-vector"), undriven)
 
-    def _model(self, kind: Kind) -> ExudynModel:
-        """The model with this kind of node, which is kept."""
-        if kind not in self._models:
-            self._models[kind] = ExudynModel(self._engine, self._system, kind, self._axes)
-        return self._models[kind]
+    def _model(self, kind: Kind, axes: Axes | None = None) -> ExudynModel:
+        """The model with this kind of node, in these axes or the usual ones, which is kept."""
+        key = kind, axes or self._axes
+        if key not in self._models:
+            self._models[key] = ExudynModel(self._engine, self._system, *key)
+        return self._models[key]
 
     def run(
         self,
@@ -112,8 +115,10 @@ class ExudynAdapter(OneJointAdapter):
     ) -> Trajectory:
         """`SolveDynamic`, once where steps are fixed, else from sample to sample.
 
-        Raises UnsupportedError for an integrator that Exudyn has not, for a pivot that it does not
-        step, and where a step is too long for the angles of an Rxyz node.
+        In two axes of an Rxyz node it is a call for some steps each.
+
+        Raises UnsupportedError for an integrator that Exudyn has not, and for a pivot that it does
+        not step.
         """
         self._loaded()
         plan = plan_of(integrator)
@@ -124,12 +129,14 @@ class ExudynAdapter(OneJointAdapter):
         times, start = np.array(kept) * timestep, np.hstack(coordinates(model, initial))
         if steps == 0 or not is_finite(start):
             rows, seconds = np.full((len(kept), len(start)), np.nan), 0.0
+        elif plan.node == "rxyz" and mends(self._setup, "physicsInertia"):
+            own = settings_of(self._engine, plan, self._setup)
+            both = [self._model(plan.node, axes) for axes in (self._axes, self._axes.others)]
+            found, seconds = run_in_two(self._engine, both, own, initial, timestep, steps)
+            return Trajectory(times, found[kept], seconds)
         elif plan.fixed:
             own = settings_of(self._engine, plan, self._setup)
-            each = plan.node == "rxyz"  # its angles are looked at after every step
-            taken = list(range(steps + 1)) if each else kept
-            rows, seconds = run_fixed(self._engine, model, own, initial, timestep, taken)
-            rows = rows[kept] if each else rows
+            rows, seconds = run_fixed(self._engine, model, own, initial, timestep, kept)
         else:
             own = settings_of(self._engine, plan, self._setup, accuracy)
             ends = np.arange(steps + 1) * timestep  # where steps have to end

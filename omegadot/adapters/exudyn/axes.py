@@ -26,6 +26,11 @@ class Axes:
 
     turned: bool
 
+    @property
+    def others(self) -> Axes:
+        """The other axes of the two."""
+        return Axes(not self.turned)
+
     def in_node(self, vector: Array) -> Array:
         """Components in the node's axes of a vector in the body's."""
         return np.roll(vector, 1, axis=-1) if self.turned else vector

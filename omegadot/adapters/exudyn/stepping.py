@@ -14,7 +14,6 @@ import numpy as np
 from omegadot.adapters.exudyn.integrators import SOLVES, Plan
 from omegadot.adapters.exudyn.joint import place
 from omegadot.adapters.exudyn.model import ExudynModel
-from omegadot.adapters.exudyn.nodes import NODES
 from omegadot.adapters.protocol import Setup, UnsupportedError, mends
 from omegadot.reference_impl.system import Array, State
 
@@ -45,7 +44,7 @@ def run_fixed(
     """Coordinates with their rates (n, k) at these steps, and the s that the steps took.
 
     A run that is no longer finite has NaN in its later rows.  Raises what Exudyn raises, and
-    UnsupportedError where it takes no step, and as `refuse_unresolved` does.
+    UnsupportedError where it takes no step.
     """
     steps, own = kept[-1], settings.timeIntegration
     own.numberOfSteps, own.endTime = steps, steps * h
@@ -60,8 +59,6 @@ def run_fixed(
         failed = error
     seconds = perf_counter() - began
     times, logged = model.logged()
-    if model.node_kind is NODES["rxyz"]:
-        refuse_unresolved(logged, h)
     if failed and len(times) == 1:
         raise UnsupportedError(
             f"Newton's iterations of Exudyn's {settings.timeIntegration.solverType.name} do not "
@@ -105,21 +102,3 @@ def run_by_accuracy(
 def is_finite(row: Array) -> bool:
     """Whether coordinates are finite, and their squares."""
     return bool(np.all(np.abs(row) < ROOT_OF_LARGEST))
-
-
-def refuse_unresolved(rows: Array, timestep: float) -> None:
-    """Raise UnsupportedError where a step turns further than the angles' singularity is away.
-
-    rows: (n, 12), coordinates and rates of an Rxyz node after each step. The rates have a pole in
-    time where ``cos(b) = 0``, at ``cos(b) / |omega|`` from here at the least, and a longer step is
-    beyond what any power series of the motion holds for.
-    """
-    with np.errstate(over="ignore", invalid="ignore"):
-        away = np.abs(np.cos(rows[:, 4]))
-        turns = timestep * np.hypot(np.abs(rows[:, 9]) * away, rows[:, 10])
-    if np.any(turns > away):
-        raise UnsupportedError(
-            "Exudyn's node Rxyz has three angles, and a step turns further than the motion is away "
-            "from an angle of 90 degrees about y, where these are singular; take smaller steps, or "
-            "a node of the rotation vector"
-        )
