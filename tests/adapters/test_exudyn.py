@@ -141,6 +141,29 @@ def test_explicit_solvers_would_turn_a_pivoted_body_as_a_free_one(
     assert norm(rate - forward_dynamics(of, start).angular) > 1.0
 
 
+def test_rounding_leaves_the_pivot_of_a_heavy_body_where_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Equations of the size of one are no pivots of a solver beside forces of 3e5 kg."""
+    heavy = Body(np.array(305991.51), np.zeros(3), np.diag([1272.9316, 1272.9316, 1904.222]))
+    pivot = np.array([-0.0094898, -0.0385959, -0.0314486])
+    of = System((heavy,), Load(pivot=pivot, torque_world=np.array([0.0, -0.02, 0.0])))
+    many = place_on_pivot(of, states(40, seed=3, fast=0.01))
+
+    def moving() -> float:
+        joint = exudyn(of)._joint
+        found = []
+        for row in range(40):
+            joint.forward(at(many, row))
+            held = joint.model.mbs.systemData.GetODE2Coordinates_tt()[:3]
+            found.append(float(norm(np.array(held))))
+        return max(found)
+
+    assert moving() == 0.0
+    monkeypatch.setattr(ExudynModel, "_constraint_factor", lambda _: 1.0)
+    assert moving() > 0.0
+
+
 class OnASphericalJoint(ExudynModel):
     """A body on a joint away from its node, which is at the body's origin."""
 

@@ -42,9 +42,10 @@ CONVENTIONS = (
     "-EP is the node of Euler parameters, (w, x, y, z), of which the length is a constraint; -Rxyz "
     "has three angles, R = Rx Ry Rz, and their rates, singular where the second is 90 degrees",
     "linear velocities are in world axes, of the node",
-    "a pivot is three ObjectConnectorCoordinate, which hold the node's place; explicit solvers "
-    "then take omega-dot of the body as if it were free, so that a pivot off the centre of mass is "
-    "for implicit solvers alone",
+    "a pivot is three ObjectConnectorCoordinate, which hold the node's place, with a factorValue1 "
+    "above the body's mass, so that rounding leaves the place alone; explicit solvers then take "
+    "omega-dot of the body as if it were free, so that a pivot off the centre of mass is for "
+    "implicit solvers alone",
     "damping is an ObjectConnectorRigidBodySpringDamper without stiffness to a ground body",
     "torques are LoadTorqueVector, bodyFixed or not",
     "inverse dynamics is M q'' - f, of the solver's mass matrix and right-hand side",

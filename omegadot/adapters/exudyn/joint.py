@@ -52,9 +52,6 @@ class ExudynJoint:
         self._settings = exudyn.SimulationSettings()
         self._settings.solution.file.write = False
         self._settings.solution.sensors.active = False
-        # Exudyn's dense solvers lose two digits of a pivoted body's omega-dot, where the equations
-        # of forces and of constraints differ in size.
-        self._settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
 
     def body(self) -> Body:
         """Mass, centre of mass and inertia, read back."""

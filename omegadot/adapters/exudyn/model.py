@@ -8,6 +8,7 @@ from a difference quotient in the rotation vector along omega, which is not the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -94,7 +95,17 @@ class ExudynModel:
         fixed = mbs.AddMarker(marker(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
         for axis in range(3):
             ends = [fixed, mbs.AddMarker(marker(nodeNumber=self.node, coordinate=axis))]
-            mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends))
+            held = items.ObjectConnectorCoordinate
+            mbs.AddObject(held(markerNumbers=ends, factorValue1=self._constraint_factor()))
+
+    def _constraint_factor(self) -> float:
+        """By what the pivot's equations ``x = 0`` are multiplied: a power of 2, nothing is rounded.
+
+        They are then larger than the body's own equations, m and m |c| in the columns of x, so that
+        a solver which chooses its pivots by size begins with them, and solves omega-dot apart.
+        """
+        size = float(self.system.body.mass) * max(1.0, float(np.linalg.norm(self.center)))
+        return 2.0 ** math.ceil(math.log2(size) + 1)
 
     def _sensor(self, kind: str) -> Any:
         """What logs the node's coordinates, or their rates, in native code."""
