@@ -15,7 +15,6 @@ from omegadot.adapters.exudyn.joint import ExudynJoint
 from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import NODES
 from omegadot.adapters.exudyn.two_axes import is_exchanged
-from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.kinematics import at_point, place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, exp_quaternion, turn_in_body
@@ -28,7 +27,6 @@ pytest.importorskip("exudyn")
 STEP, STEPS = 0.01, 20
 # A step of a dozen operations, of rates that a step may double: the runs last 0.2 s.
 SAME = 64 * EPS * STEPS
-EXPLICIT = sorted(name for name, plan in PLANS.items() if plan.explicit)
 NO_TURN = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -122,17 +120,8 @@ def test_a_turn_near_none_loses_its_digits_in_the_axes_as_shipped() -> None:
     assert turn_lost("as-shipped") > 1e-6
 
 
-@pytest.mark.parametrize("name", EXPLICIT)
-def test_a_pivot_off_the_centre_of_mass_is_refused_by_explicit_solvers(name: str) -> None:
-    of = system("full", "pivot_gravity")
-    with pytest.raises(UnsupportedError, match="centre of mass only"):
-        exudyn(of).run(a_start(of), name, STEP, 1, 1)
-
-
-def test_explicit_solvers_would_turn_a_pivoted_body_as_a_free_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(ExudynAdapter, "_refuse_pivot", lambda *_: None)
+def test_explicit_solvers_turn_a_pivoted_body_as_a_free_one() -> None:
+    """As their page has it: they are for systems without constraints."""
     of, free = system("full", "pivot_gravity"), system("full", "gravity")
     start = a_start(of)
     found = exudyn(of).run(start, "ExplicitEuler", STEP, 1, 1).state[-1]

@@ -138,6 +138,9 @@ def test_an_exception_is_about_the_bodies_within_its_limits(
 
 def test_the_quantities_that_limits_are_about() -> None:
     driven, thrown = load_builtin("driven-body"), load_builtin("free-bar")
+    top, damped = load_builtin("heavy-top"), load_builtin("damped-tumble")
+    slowed = damped.load.damping * damped.run.duration
+    assert top.load.pivot is not None
     moments = np.linalg.eigvalsh(driven.body.inertia)
     for scenario, key, value in (
         (driven, "moments_product", float(np.prod(moments))),
@@ -145,12 +148,16 @@ def test_the_quantities_that_limits_are_about() -> None:
         (driven, "torque", float(np.linalg.norm(driven.load.torque[0].value))),
         (driven, "angular_velocity", float(np.linalg.norm(driven.initial.angular_velocity))),
         (thrown, "speed", float(np.linalg.norm(thrown.initial.linear_velocity))),
+        (damped, "decay", slowed / float(np.linalg.eigvalsh(damped.body.inertia)[2])),
+        (top, "lever", float(np.linalg.norm(np.subtract(top.load.pivot, top.body.center_of_mass)))),
     ):
         assert value > 0.0
         for factor, below in ((1.001, True), (0.999, False)):
             limits = {f"{key}_below": value * factor}, {f"{key}_above": value * factor}
             found = [read_conditions(limit, "here")[0].holds(scenario) for limit in limits]
             assert found == [below, not below], key
+    pivoted = read_conditions({"lever_above": 0.0}, "here")[0]
+    assert [pivoted.holds(scenario) for scenario in (top, thrown)] == [True, False]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from omegadot.adapters.exudyn.axes import Axes
-from omegadot.adapters.exudyn.integrators import Plan, declared_integrators, plan_of
+from omegadot.adapters.exudyn.integrators import declared_integrators, plan_of
 from omegadot.adapters.exudyn.joint import ExudynJoint, coordinates, states
 from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import Kind
@@ -31,7 +31,6 @@ from omegadot.adapters.protocol import (
     UnsupportedError,
     mends,
 )
-from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State, System
 
@@ -42,10 +41,9 @@ CONVENTIONS = (
     "-EP is the node of Euler parameters, (w, x, y, z), of which the length is a constraint; -Rxyz "
     "has three angles, R = Rx Ry Rz, and their rates, singular where the second is 90 degrees",
     "linear velocities are in world axes, of the node",
-    "a pivot is three ObjectConnectorCoordinate, which hold the node's place, with a factorValue1 "
-    "above the body's mass, so that rounding leaves the place alone; explicit solvers then take "
-    "omega-dot of the body as if it were free, so that a pivot off the centre of mass is for "
-    "implicit solvers alone",
+    "a pivot is three ObjectConnectorCoordinate, which hold the node's place; for omega-dot with a "
+    "factorValue1 above the body's mass, so that rounding leaves the place alone; explicit solvers "
+    "take that of the body as if it were free, and are wrong of a pivot off the centre of mass",
     "damping is an ObjectConnectorRigidBodySpringDamper without stiffness to a ground body",
     "torques are LoadTorqueVector, bodyFixed or not",
     "inverse dynamics is M q'' - f, of the solver's mass matrix and right-hand side",
@@ -95,8 +93,11 @@ class ExudynAdapter(OneJointAdapter):
     def _built(self, system: System, via: Format | Literal[""]) -> ExudynJoint:
         self._system = system
         self._models: dict[tuple[Kind, Axes], ExudynModel] = {}
-        undriven = ExudynModel(self._engine, system, "rotation-vector", self._axes, False)
-        return ExudynJoint(self._engine, self._model("rotation-vector"), undriven)
+        driven, undriven = (
+            ExudynModel(self._engine, system, "rotation-vector", self._axes, loads, stepped=False)
+            for loads in (True, False)
+        )
+        return ExudynJoint(self._engine, driven, undriven)
 
     def _model(self, kind: Kind, axes: Axes | None = None) -> ExudynModel:
         """The model with this kind of node, in these axes or the usual ones, which is kept."""
@@ -118,14 +119,12 @@ class ExudynAdapter(OneJointAdapter):
 
         In two axes of an Rxyz node it is a call for some steps each.
 
-        Raises UnsupportedError for an integrator that Exudyn has not, and for a pivot that it does
-        not step.
+        Raises UnsupportedError for an integrator that Exudyn has not.
         """
         self._loaded()
         plan = plan_of(integrator)
         if plan is None:
             raise UnsupportedError(f"exudyn has no integrator {integrator!r}.")
-        self._refuse_pivot(integrator, plan)
         model, kept = self._model(plan.node), kept_steps(steps, every)
         times, start = np.array(kept) * timestep, np.hstack(coordinates(model, initial))
         if steps == 0 or not is_finite(start):
@@ -146,11 +145,3 @@ class ExudynAdapter(OneJointAdapter):
         rows[0] = start
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
             return Trajectory(times, states(model, rows), seconds)
-
-    def _refuse_pivot(self, integrator: str, plan: Plan) -> None:
-        if plan.explicit and np.any(lever(self._system)):
-            raise UnsupportedError(
-                f"Exudyn's {integrator} holds a pivot by setting the node's acceleration to zero "
-                "after it has solved for that of a free body: omega-dot is right of a pivot at the "
-                "centre of mass only; take an implicit solver"
-            )

@@ -27,11 +27,18 @@ class ExudynModel:
     """mbs, node and body are Exudyn's system and the indices of its items.
 
     axes: of the node, and of the body in Exudyn.  driven: whether damping and applied torques act.
+    stepped: whether it is for steps; if not, its accelerations alone are taken.
     Coordinates are those of `nodes`.
     """
 
     def __init__(
-        self, exudyn: Any, system: System, kind: Kind, axes: Axes, driven: bool = True
+        self,
+        exudyn: Any,
+        system: System,
+        kind: Kind,
+        axes: Axes,
+        driven: bool = True,
+        stepped: bool = True,
     ) -> None:
         self._items: Any = exudyn.itemInterface
         self.kinds: Any = exudyn.OutputVariableType
@@ -45,7 +52,7 @@ class ExudynModel:
         self.body = self._body()
         self._loads(driven)
         if pivot is not None:
-            self._held()
+            self._held(1.0 if stepped else self._constraint_factor())
         self._sensors = [self._sensor(kind) for kind in ("Coordinates", "Coordinates_t")]
         self.mbs.Assemble()
 
@@ -89,20 +96,21 @@ class ExudynModel:
         """A marker at the origin of a body."""
         return self.mbs.AddMarker(self._items.MarkerBodyRigid(bodyNumber=body))
 
-    def _held(self) -> None:
+    def _held(self, factor: float) -> None:
         mbs, items = self.mbs, self._items
         marker: Callable[..., Any] = items.MarkerNodeCoordinate
         fixed = mbs.AddMarker(marker(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
         for axis in range(3):
             ends = [fixed, mbs.AddMarker(marker(nodeNumber=self.node, coordinate=axis))]
             held = items.ObjectConnectorCoordinate
-            mbs.AddObject(held(markerNumbers=ends, factorValue1=self._constraint_factor()))
+            mbs.AddObject(held(markerNumbers=ends, factorValue1=factor))
 
     def _constraint_factor(self) -> float:
         """By what the pivot's equations ``x = 0`` are multiplied: a power of 2, nothing is rounded.
 
         They are then larger than the body's own equations, m and m |c| in the columns of x, so that
-        a solver which chooses its pivots by size begins with them, and solves omega-dot apart.
+        a solver which chooses its pivots by size begins with them, and solves omega-dot apart. The
+        tolerance of steps is about these equations as they are.
         """
         size = float(self.system.body.mass) * max(1.0, float(np.linalg.norm(self.center)))
         return 2.0 ** math.ceil(math.log2(size) + 1)

@@ -15,6 +15,7 @@ import numpy as np
 
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import system_of
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.scenarios import Scenario
 
 
@@ -27,15 +28,28 @@ def _torque(scenario: Scenario) -> float:
     return sum(math.hypot(*torque.value) for torque in scenario.load.torque)
 
 
+def _lever(scenario: Scenario) -> float:
+    pivoted = scenario.load.pivot is not None
+    return math.hypot(*lever(system_of(scenario))) if pivoted else 0.0
+
+
+def _decay(scenario: Scenario) -> float:
+    """``d T / J``, J the largest moment: omega is slowed by e to this, or more, in the run."""
+    largest = float(np.linalg.eigvalsh(moving_inertia(system_of(scenario)))[-1])
+    return scenario.load.damping * scenario.run.duration / largest
+
+
 QUANTITIES: dict[str, Callable[[Scenario], float]] = {
     "moments_product": lambda scenario: float(np.prod(_moments(scenario))),
     "moments_ratio": lambda scenario: float(_moments(scenario)[-1] / _moments(scenario)[0]),
     "angular_velocity": lambda scenario: math.hypot(*scenario.initial.angular_velocity),
     "speed": lambda scenario: math.hypot(*scenario.initial.linear_velocity),
     "torque": _torque,
+    "lever": _lever,
+    "decay": _decay,
 }
 """kg^3 m^6; largest over smallest; rad/s and m/s of the centre of mass, both at the start; N m,
-of the applied torques.
+of the applied torques; m, from the pivot to the centre of mass, and 0 without a pivot; 1.
 """
 KEYS = tuple(f"{quantity}_{side}" for quantity in QUANTITIES for side in ("below", "above"))
 
