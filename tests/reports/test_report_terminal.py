@@ -84,6 +84,17 @@ def test_what_did_not_run_has_its_outcome_and_reason(record):
     assert "1 crashed" in text
 
 
+def test_runs_that_were_not_made_hide_no_numbers_of_the_others(record):
+    """Caught: a cell with one unsupported run of three shows nothing that the two measured."""
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    whole = row(printed(record, 160), "spun-again")
+    tasks[-1].update(outcome="unsupported", reason="three angles", gates={})
+    found = row(printed(replace(record, run={**record.run, "tasks": tasks}), 160), "spun-again")
+    numbers = whole.rsplit("✓", 1)[1].split()
+    assert found.rsplit("unsupported 2/3", 1)[1].split()[:3] == numbers
+    assert len(numbers) == 3
+
+
 def test_an_empty_record_is_reported_as_such(record):
     run = {**record.run, "tasks": [], "scenarios": [], "engines": []}
     text = printed(replace(record, run=run, metrics=record.metrics.clear()), 80)

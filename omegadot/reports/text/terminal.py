@@ -135,7 +135,7 @@ def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
         text = Text(_mark(cell, console), style)
         if cell.failed:  # the numbers that are headed may all be of gates that hold
             text.append(_failed(cell.failed, shown, console), style)
-        elif cell.status in _WITH_NUMBERS:
+        elif cell.status in _WITH_NUMBERS or cell.runs["pass"]:  # of the runs that were judged
             text.append(" ".join(["", *terms]).rstrip(), "default")
         texts.append(text)
     return texts
