@@ -15,6 +15,7 @@ from omegadot.adapters.exudyn.joint import ExudynJoint
 from omegadot.adapters.exudyn.model import ExudynModel
 from omegadot.adapters.exudyn.nodes import NODES
 from omegadot.adapters.exudyn.two_axes import is_exchanged
+from omegadot.gates.bounds.scales import body_scale, omega_dot_bound, torque_size
 from omegadot.reference_impl.kinematics import at_point, place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, exp_quaternion, turn_in_body
@@ -151,6 +152,17 @@ def test_rounding_leaves_the_pivot_of_a_heavy_body_where_it_is(
     assert moving() == 0.0
     monkeypatch.setattr(ExudynModel, "_constraint_factor", lambda _: 1.0)
     assert moving() > 0.0
+
+
+def test_a_small_body_on_a_pivot_keeps_every_digit_of_omega_dot() -> None:
+    """Caught: a dense solver, which begins with the forces and reaches most of the bound."""
+    small = Body(np.array(5.46e-4), np.array([2.8e-4, 4.0e-4, 1.6e-4]), np.diag([1.4e-9] * 3))
+    pivot = np.array([-1.4e-4, 4.6e-4, -3.3e-4])
+    of = System((small,), Load(pivot=pivot, gravity=np.array([0.0, 4600.0, 0.0])))
+    many = place_on_pivot(of, states(100, seed=4, fast=900.0))
+    true, found = forward_dynamics(of, many), exudyn(of).forward_dynamics(many)
+    apart = norm(found.angular - true.angular) * body_scale(of).largest
+    assert np.max(apart / torque_size(of, many, true)) <= 0.2 * omega_dot_bound(of, EPS)
 
 
 class OnASphericalJoint(ExudynModel):

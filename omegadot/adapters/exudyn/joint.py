@@ -52,6 +52,9 @@ class ExudynJoint:
         self._settings = exudyn.SimulationSettings()
         self._settings.solution.file.write = False
         self._settings.solution.sensors.active = False
+        # Dense solvers lose two digits of a small body's omega-dot on a pivot: they begin with the
+        # forces, m |c| in the columns of omega-dot, which are larger there than its own equations.
+        self._settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
 
     def body(self) -> Body:
         """Mass, centre of mass and inertia, read back."""
