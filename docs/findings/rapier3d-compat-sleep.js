@@ -9,7 +9,7 @@
 // kind = "default"
 // title = "Slow bodies are put to sleep"
 // what = "A body at 0.02 m/s in free space stops after half a second."
-// why = "A body may sleep unless it is told not to."
+// why = "A body may sleep unless that is switched off."
 // mends = "RigidBodyDesc.setCanSleep(false)"
 // link = "https://rapier.rs/docs/user_guides/javascript/rigid_bodies"
 // ///

@@ -26,7 +26,7 @@ CONVENTIONS = (
     "ForwardDynamics answers with as many numbers as Q has: the last is none of an acceleration",
     "segmentAngularVelocity is in world axes",
     "damping is the joint's own (jointDampings); InverseDynamics subtracts it where it has to be "
-    "added, so that it is asked of a model without damping",
+    "added, so that it is requested of a model without damping",
     "no stepper: the reference's schemes step ForwardDynamics, in the spatial velocity of the "
     "body's origin in body axes",
 )

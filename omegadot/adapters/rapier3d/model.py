@@ -90,7 +90,7 @@ class RapierModel:
         joint = engine.SphericalJoint.builder().build()
         added = world.multibody_joints.insert(fixed, handle, joint)
         multibody, _ = world.multibody_joints.get(added)
-        # Until it is told that its root is fixed, the root has six velocities of its own.
+        # Until its root is stated to be fixed, the root has six velocities of its own.
         multibody.forward_kinematics(world.rigid_bodies, True)
         if damping or mends(self._setup, "set_damping"):
             multibody.set_damping([damping] * 3)
